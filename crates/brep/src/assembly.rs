@@ -1,0 +1,62 @@
+//! The model: parts and the tree that places them.
+
+use crate::{Color, NodeId, Part, PartId, Source, Warning};
+use chordal_nurbs::DAffine3;
+
+/// One occurrence in the assembly tree, fully expanded: a part placed twice has two nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    pub name: String,
+    /// From this node's coordinates to its parent's (of a root: to millimetres); may mirror and scale.
+    pub transform: DAffine3,
+    pub part: Option<PartId>,
+    pub children: Vec<NodeId>,
+    /// Overrides the colours of everything below.
+    pub color: Option<Color>,
+    pub source: Source,
+}
+
+/// A part with its transform to millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    pub node: NodeId,
+    pub part: PartId,
+    /// From the part's coordinates to the world's, in millimetres.
+    pub world: DAffine3,
+}
+
+/// Everything that a file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    pub name: String,
+    /// The format and its version as the file states it ("STEP AP214 …").
+    pub schema: String,
+    /// The name of the file's length unit ("mm", "inch"), of the first context where they differ.
+    pub unit: String,
+    pub parts: Vec<Part>,
+    pub nodes: Vec<Node>,
+    pub roots: Vec<NodeId>,
+    pub warnings: Vec<Warning>,
+}
+
+impl Model {
+    /// Every placed part, depth first in the order of the tree.
+    pub fn placements(&self) -> Vec<Placement> {
+        let mut found = Vec::new();
+        let mut stack: Vec<(NodeId, DAffine3)> = self.roots.iter().rev().map(|&n| (n, DAffine3::IDENTITY)).collect();
+        while let Some((id, parent)) = stack.pop() {
+            let node = &self.nodes[id.index()];
+            let world = parent * node.transform;
+            if let Some(part) = node.part {
+                found.push(Placement { node: id, part, world });
+            }
+            stack.extend(node.children.iter().rev().map(|&child| (child, world)));
+        }
+        found
+    }
+
+    /// The number of faces with every instance counted.
+    pub fn placed_faces(&self) -> usize {
+        self.placements().iter().map(|p| self.parts[p.part.index()].faces.len()).sum()
+    }
+}

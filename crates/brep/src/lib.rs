@@ -1,0 +1,18 @@
+//! The exact model: parts made of faces, faces trimmed by loops of coedges, edges shared by faces, parts placed in
+//! an assembly tree.
+//!
+//! Geometry of a part stays in the units of its file; every placement carries the scale to its parent, and the
+//! root nodes carry the scale to millimetres. So a walk down the tree ends in millimetres, whatever units are mixed.
+
+mod assembly;
+mod ids;
+mod part;
+mod source;
+
+pub use assembly::{Model, Node, Placement};
+pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};
+pub use part::{
+    Body, BodyKind, Coedge, Color, Edge, Face, FaceGeometry, Loop, LooseItem, LooseKind, Part, Pcurve, Shell, TessellatedItem,
+    Vertex,
+};
+pub use source::{Source, Warning};

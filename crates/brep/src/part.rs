@@ -1,0 +1,165 @@
+//! One part: vertices, edges, faces, shells and bodies in the part's own coordinates and units.
+
+use crate::{EdgeId, FaceId, ShellId, Source, VertexId};
+use chordal_nurbs::{Curve, Curve2, DVec3, Range, Surface};
+use std::sync::Arc;
+
+/// Linear RGB with opacity, each 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Color(pub [f32; 4]);
+
+/// A corner shared by edges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vertex {
+    pub point: DVec3,
+    pub source: Source,
+}
+
+/// A curve piece shared by the faces that meet along it.
+///
+/// The edge runs from `start` at `range.start` to `end` at `range.end`, with `range.start < range.end`. Readers swap
+/// the vertices (and every coedge's direction) where the file runs the edge against its curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edge {
+    /// `None`: the edge is a single point (a pole, an apex).
+    pub curve: Option<Arc<Curve>>,
+    pub range: Range,
+    pub start: VertexId,
+    pub end: VertexId,
+    pub source: Source,
+}
+
+/// One use of an edge by a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coedge {
+    pub edge: EdgeId,
+    /// True where the loop runs along the edge from its start to its end.
+    pub forward: bool,
+    /// The file's curves for this edge in the parameter space of this face's surface: none, one, or (along a seam)
+    /// both. They share the edge's parameter range unless their own says otherwise; not yet checked against the edge.
+    pub pcurves: Vec<Pcurve>,
+}
+
+/// A curve in parameter space with the range that corresponds to the edge's range, start to start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pcurve {
+    pub curve: Arc<Curve2>,
+    pub range: Range,
+}
+
+/// A closed chain of coedges, or a single vertex on a closed surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Loop {
+    /// In the order and direction of the file, orientation flags of the bound already applied.
+    Edges { coedges: Vec<Coedge>, outer: bool },
+    /// The loop is one point (VERTEX_LOOP): it cuts nothing off.
+    Vertex(VertexId),
+    /// A polygon of points without edges (POLY_LOOP), each a vertex of the part.
+    Polygon { vertices: Vec<VertexId>, outer: bool },
+}
+
+/// The surface of a face, or why it has none.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FaceGeometry {
+    Surface(Arc<Surface>),
+    /// The face could not be understood; it stays in the model and is reported with this reason.
+    Failed(String),
+}
+
+/// A bounded piece of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    pub geometry: FaceGeometry,
+    /// The face's normal is the surface's. Loops run with material on their left seen against the **face's** normal.
+    pub same_sense: bool,
+    /// The shell uses the face turned over (a void's shell): triangles are written the other way round.
+    pub flipped: bool,
+    /// Empty: the whole surface.
+    pub loops: Vec<Loop>,
+    pub name: String,
+    pub color: Option<Color>,
+    pub layer: Option<String>,
+    pub source: Source,
+}
+
+impl Face {
+    /// True where triangles must run against the surface's own normal Su × Sv.
+    pub fn normal_reversed(&self) -> bool {
+        !self.same_sense ^ self.flipped
+    }
+}
+
+/// Faces joined along edges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shell {
+    pub faces: Vec<FaceId>,
+    /// The file says that it bounds a volume.
+    pub closed: bool,
+    pub source: Source,
+}
+
+/// What a body is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// An outer shell and its voids.
+    Solid,
+    /// Open or unclassified shells.
+    Sheet,
+    /// Faces that the file groups without a shell.
+    FaceSet,
+}
+
+/// A named, coloured group of shells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    pub kind: BodyKind,
+    pub shells: Vec<ShellId>,
+    pub name: String,
+    pub color: Option<Color>,
+    pub layer: Option<String>,
+    pub source: Source,
+}
+
+/// What a loose item is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LooseKind {
+    Wire,
+    Point,
+}
+
+/// A curve or point of the file that belongs to no face: it has no triangles and is reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LooseItem {
+    pub kind: LooseKind,
+    pub name: String,
+    pub source: Source,
+}
+
+/// Triangles that were in the file already: passed through, nothing is proven about them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TessellatedItem {
+    pub name: String,
+    pub points: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// One per point, or empty.
+    pub normals: Vec<DVec3>,
+    pub color: Option<Color>,
+    pub source: Source,
+}
+
+/// One part, meshed once however often it is placed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    pub name: String,
+    pub vertices: Vec<Vertex>,
+    pub edges: Vec<Edge>,
+    pub faces: Vec<Face>,
+    pub shells: Vec<Shell>,
+    pub bodies: Vec<Body>,
+    pub loose: Vec<LooseItem>,
+    pub tessellated: Vec<TessellatedItem>,
+    pub color: Option<Color>,
+    /// The file's own statement of accuracy, in the part's units (UNCERTAINTY_MEASURE), where it makes one.
+    pub uncertainty: Option<f64>,
+    pub source: Source,
+}

@@ -1,0 +1,34 @@
+//! Where in the file something came from.
+
+use std::fmt;
+
+/// An entity of the input file: its number (`#id`; 0 where the format has none) and its line (from 1; 0 unknown).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Source {
+    pub entity: u64,
+    pub line: u32,
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.entity, self.line) {
+            (0, 0) => write!(f, "the file"),
+            (0, line) => write!(f, "line {line}"),
+            (entity, 0) => write!(f, "#{entity}"),
+            (entity, line) => write!(f, "#{entity} (line {line})"),
+        }
+    }
+}
+
+/// Something in the file that was repaired, guessed or left out; one sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    pub source: Source,
+    pub message: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.source, self.message)
+    }
+}

@@ -1,0 +1,7 @@
+//! Mesh buffers that remember where every vertex came from, and the scene of placed meshes that writers write.
+
+mod part_mesh;
+mod scene;
+
+pub use part_mesh::{Corner, FaceMesh, Origin, PartMesh};
+pub use scene::{PassThrough, PlacedPart, Rgba, Scene, SceneNode, ScenePart};

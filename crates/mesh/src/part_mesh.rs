@@ -1,0 +1,53 @@
+//! The mesh of one part, in the part's own coordinates and units.
+
+use glam::{DVec2, DVec3};
+
+/// What a mesh vertex is a sample of. Indices are those of the part's vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Origin {
+    /// The part's vertex.
+    Vertex(u32),
+    /// Sample `index` (from 1, the ends are vertices) of an edge.
+    Edge { edge: u32, index: u32 },
+    /// A point of a face, inside it or on a seam or pole that only this face has.
+    Face(u32),
+}
+
+/// One corner of a face's triangles: a shared position seen from one face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Index into [`PartMesh::positions`].
+    pub position: u32,
+    /// Where it lies in the parameter space of the face; corners on a seam or pole share a position, not their uv.
+    pub uv: DVec2,
+    /// The exact unit normal of the face there, pointing out of the material.
+    pub normal: DVec3,
+}
+
+/// The triangles of one face.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FaceMesh {
+    /// The face's index in its part.
+    pub face: u32,
+    pub corners: Vec<Corner>,
+    /// Indices into `corners`, counter-clockwise seen from outside the material.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A mesh whose positions are shared by identity: two faces that meet at an edge use the same indices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PartMesh {
+    pub positions: Vec<DVec3>,
+    /// One per position.
+    pub origins: Vec<Origin>,
+    /// One per face of the part, in its order; without triangles where the face failed.
+    pub faces: Vec<FaceMesh>,
+    /// Per edge of the part, the positions along it, ends included; empty where no face uses it.
+    pub edges: Vec<Vec<u32>>,
+}
+
+impl PartMesh {
+    pub fn triangle_count(&self) -> usize {
+        self.faces.iter().map(|f| f.triangles.len()).sum()
+    }
+}

@@ -1,0 +1,42 @@
+//! Curves and surfaces of CAD models: evaluation, inversion, Bézier form, and bounds that are proofs.
+//!
+//! Conventions, stated once:
+//! - *degree*, never order; a knot vector has `points + degree + 1` knots.
+//! - Angles are radians. Lengths are the model's own units.
+//! - Elementary, extruded and revolved surfaces use the parameters of ISO 10303-42 (STEP): a cone's `v` runs
+//!   along its **axis**, an extrusion is `c(u) + v·d`, a revolution turns `c(v)` by the angle `u`.
+//! - `_uv` names a point of parameter space, `_xyz` one of model space.
+
+pub use glam::{DAffine3, DVec2, DVec3, DVec4};
+
+mod basis;
+mod bezier;
+mod bounds;
+mod compose;
+mod convert;
+mod curve;
+mod curve2;
+mod degree;
+mod error;
+mod facet;
+mod frame;
+mod invert_curve;
+mod invert_surface;
+mod nurbs_curve;
+mod nurbs_surface;
+mod surface;
+mod uv_box;
+mod vector;
+
+pub use bezier::{BezierCurve, BezierPatch};
+pub use bounds::{Ball, SecondDerivativeBounds, SurfaceBounds};
+pub use curve::{CompositeSegment, Curve, CurveJet};
+pub use curve2::{Curve2, Curve2Jet};
+pub use error::NurbsError;
+pub use facet::{FacetBound, facet_bound};
+pub use frame::{Frame, Frame2};
+pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
+pub use nurbs_surface::NurbsSurface;
+pub use surface::{Surface, SurfaceJet, SurfaceKind};
+pub use uv_box::{Range, UvBox};
+pub use vector::Vector;

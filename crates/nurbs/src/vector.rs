@@ -1,0 +1,43 @@
+//! The few operations that basis functions and Bézier algorithms need of a point, whatever its dimension.
+
+use glam::{DVec2, DVec3, DVec4};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Sub};
+
+/// A real vector space element: `f64`, `DVec2`, `DVec3`, `DVec4`.
+pub trait Vector:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// Euclidean length.
+    fn norm(self) -> f64;
+    /// True where every component is finite.
+    fn all_finite(self) -> bool;
+}
+
+impl Vector for f64 {
+    fn norm(self) -> f64 {
+        self.abs()
+    }
+    fn all_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+macro_rules! vector {
+    ($($t:ty),*) => {$(
+        impl Vector for $t {
+            fn norm(self) -> f64 { self.length() }
+            fn all_finite(self) -> bool { self.is_finite() }
+        }
+    )*};
+}
+vector!(DVec2, DVec3, DVec4);

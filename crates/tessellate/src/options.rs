@@ -1,0 +1,74 @@
+//! What is asked of a mesh, in the units of the part.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// How the error of a facet is judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Bound {
+    /// By an upper bound: the tolerance is a promise.
+    #[default]
+    Proven,
+    /// By samples, as most meshers do: faster, no promise.
+    Estimated,
+}
+
+/// What is asked of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// Largest distance between mesh and surface, in the part's units.
+    pub tolerance: f64,
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians.
+    pub angle: Option<f64>,
+    /// Longest mesh edge, in the part's units.
+    pub max_edge: Option<f64>,
+    pub bound: Bound,
+    /// Time after which a face is given up.
+    pub face_timeout: Option<Duration>,
+    /// Triangles after which a face is given up.
+    pub face_triangles: usize,
+}
+
+impl Options {
+    pub fn new(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            angle: None,
+            max_edge: None,
+            bound: Bound::Proven,
+            face_timeout: None,
+            face_triangles: 20_000_000,
+        }
+    }
+    pub fn with_angle(mut self, radians: Option<f64>) -> Self {
+        self.angle = radians;
+        self
+    }
+    pub fn with_max_edge(mut self, length: Option<f64>) -> Self {
+        self.max_edge = length;
+        self
+    }
+    pub fn with_bound(mut self, bound: Bound) -> Self {
+        self.bound = bound;
+        self
+    }
+    pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {
+        self.face_timeout = timeout;
+        self
+    }
+}
+
+/// A flag that stops the work from another thread.
+#[derive(Clone, Debug, Default)]
+pub struct Cancel(Arc<AtomicBool>);
+
+impl Cancel {
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,40 @@
+//! What was done to a part, face by face.
+
+/// One face.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FaceReport {
+    /// Index of the face in its part.
+    pub face: u32,
+    pub triangles: usize,
+    /// Proven two-sided distance to the mesh, without the gap; NaN where nothing is proven.
+    pub proven_error: f64,
+    /// Largest distance of a mesh vertex from this face's surface: what the file itself is loose by.
+    pub gap: f64,
+    /// Which bound proved it ("plane", "second derivatives", "none" …).
+    pub bound: &'static str,
+    /// The fewest triangles possible, see DESIGN "Economy".
+    pub lower_bound: f64,
+    /// Why the face has no triangles, or not good enough ones.
+    pub failed: Option<String>,
+    /// The face is so thin that it has no area at the model's own accuracy; it has no triangles and needs none.
+    pub zero_area: bool,
+}
+
+/// Time spent in each stage, in seconds; summed over threads for the stages that run per face.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageSeconds {
+    pub heal: f64,
+    pub edges: f64,
+    pub faces: f64,
+    pub stitch: f64,
+}
+
+/// One part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PartReport {
+    /// One per face of the part, in its order.
+    pub faces: Vec<FaceReport>,
+    /// Rounds in which faces asked for finer edges.
+    pub rounds: usize,
+    pub seconds: StageSeconds,
+}
