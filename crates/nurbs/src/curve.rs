@@ -25,22 +25,46 @@ pub struct CompositeSegment {
 #[non_exhaustive]
 pub enum Curve {
     /// `origin + t·direction`; the direction need not be a unit vector.
-    Line { origin: DVec3, direction: DVec3 },
+    Line {
+        origin: DVec3,
+        direction: DVec3,
+    },
     /// `origin + r(cos t x + sin t y)`.
-    Circle { frame: Frame, radius: f64 },
+    Circle {
+        frame: Frame,
+        radius: f64,
+    },
     /// `origin + a cos t x + b sin t y`.
-    Ellipse { frame: Frame, a: f64, b: f64 },
+    Ellipse {
+        frame: Frame,
+        a: f64,
+        b: f64,
+    },
     /// `origin + f(t² x + 2t y)`.
-    Parabola { frame: Frame, focal: f64 },
+    Parabola {
+        frame: Frame,
+        focal: f64,
+    },
     /// `origin + a cosh t x + b sinh t y`.
-    Hyperbola { frame: Frame, a: f64, b: f64 },
+    Hyperbola {
+        frame: Frame,
+        a: f64,
+        b: f64,
+    },
     /// Straight pieces; parameter `i` is point `i`.
     Polyline(Vec<DVec3>),
     Nurbs(NurbsCurve3),
     /// Pieces end to end; the parameter of piece `i` runs over `i..i+1`.
     Composite(Vec<CompositeSegment>),
     /// `basis(t) + distance · unit(basis'(t) × reference)`.
-    Offset { basis: Box<Curve>, distance: f64, reference: DVec3 },
+    Offset {
+        basis: Box<Curve>,
+        distance: f64,
+        reference: DVec3,
+    },
     /// A curve given only in the parameter space of a surface.
-    OnSurface { surface: Arc<Surface>, curve: Box<Curve2> },
+    OnSurface {
+        surface: Arc<Surface>,
+        curve: Box<Curve2>,
+    },
 }

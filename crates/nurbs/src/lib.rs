@@ -20,6 +20,7 @@ mod degree;
 mod error;
 mod facet;
 mod frame;
+mod homogeneous;
 mod invert_curve;
 mod invert_surface;
 mod nurbs_curve;

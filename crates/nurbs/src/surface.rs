@@ -33,20 +33,46 @@ pub enum SurfaceKind {
 #[non_exhaustive]
 pub enum Surface {
     /// `origin + u x + v y`.
-    Plane { frame: Frame },
+    Plane {
+        frame: Frame,
+    },
     /// `origin + r(cos u x + sin u y) + v z`.
-    Cylinder { frame: Frame, radius: f64 },
+    Cylinder {
+        frame: Frame,
+        radius: f64,
+    },
     /// `origin + (r + v tan α)(cos u x + sin u y) + v z`; `radius` is the one at v = 0, α the half angle.
-    Cone { frame: Frame, radius: f64, half_angle: f64 },
+    Cone {
+        frame: Frame,
+        radius: f64,
+        half_angle: f64,
+    },
     /// `origin + r cos v (cos u x + sin u y) + r sin v z`.
-    Sphere { frame: Frame, radius: f64 },
+    Sphere {
+        frame: Frame,
+        radius: f64,
+    },
     /// `origin + (R + r cos v)(cos u x + sin u y) + r sin v z`; `major` may be less than `minor` (lemon, apple).
-    Torus { frame: Frame, major: f64, minor: f64 },
+    Torus {
+        frame: Frame,
+        major: f64,
+        minor: f64,
+    },
     /// `profile(u) + v direction`; the direction need not be a unit vector.
-    Extrusion { profile: Curve, direction: DVec3 },
+    Extrusion {
+        profile: Curve,
+        direction: DVec3,
+    },
     /// `profile(v)` turned by the angle `u` about the axis.
-    Revolution { profile: Curve, axis_origin: DVec3, axis: DVec3 },
+    Revolution {
+        profile: Curve,
+        axis_origin: DVec3,
+        axis: DVec3,
+    },
     Nurbs(NurbsSurface),
     /// `basis(u,v) + distance · unit(Su × Sv)`.
-    Offset { basis: Box<Surface>, distance: f64 },
+    Offset {
+        basis: Box<Surface>,
+        distance: f64,
+    },
 }
