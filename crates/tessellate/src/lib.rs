@@ -1,6 +1,8 @@
 //! From the exact model of a part to a watertight mesh whose distance to it is proven.
 
 mod options;
+mod metric;
+mod triangulate;
 mod report;
 
 pub use options::{Bound, Cancel, Options};
