@@ -38,7 +38,7 @@ def write_shape(shape: TopoDS_Shape, path: Path, schema: str = "AP214", pcurves:
 def write_document(doc: TDocStd_Document, path: Path, schema: str = "AP214") -> None:
     """Writes an assembly with its names and colours."""
     writer = STEPCAFControl_Writer()
-    _settings(schema, True)
+    _settings(schema, False)
     writer.SetColorMode(True)
     writer.SetNameMode(True)
     if not writer.Transfer(doc, STEPControl_AsIs):

@@ -124,13 +124,11 @@ def thread(path: Path) -> None:
 
 @case("blade", "a turbine blade lofted through twisted aerofoil sections", solids=1, closed=True)
 def blade(path: Path) -> None:
-    work = cq.Workplane("XY")
+    wires = []
     for i in range(5):
         section = _aerofoil(30 - 3 * i, math.radians(12 * i), 0.12 - 0.01 * i)
-        wire = cq.Wire.assembleEdges([cq.Edge.makeSpline([cq.Vector(x, y, 18 * i) for x, y in half])
-                                      for half in section])
-        work = work.newObject([*work.vals()[:0], wire]) if i == 0 else work.add(wire)
-    wires = [w for w in work.vals() if isinstance(w, cq.Wire)]
+        wires.append(cq.Wire.assembleEdges([cq.Edge.makeSpline([cq.Vector(x, y, 18 * i) for x, y in half])
+                                            for half in section]))
     _save(cq.Solid.makeLoft(wires), path)
 
 
