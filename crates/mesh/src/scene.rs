@@ -1,6 +1,6 @@
 //! What writers need: meshes with names and colours, placed by a tree. Lengths are millimetres after the root.
 
-use crate::PartMesh;
+use crate::{AnalyticFace, PartMesh};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
@@ -28,6 +28,8 @@ pub struct ScenePart {
     /// One per face: the index into `body_names` of the body that it belongs to.
     pub face_bodies: Vec<u32>,
     pub body_names: Vec<String>,
+    /// One per face: the elementary surface under it, if it is one; empty where nobody asked.
+    pub face_surfaces: Vec<Option<AnalyticFace>>,
     pub pass_through: Vec<PassThrough>,
 }
 
