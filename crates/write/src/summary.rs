@@ -67,8 +67,7 @@ impl Tally {
 
     fn warn_of_rounding(&mut self, options: &WriteOptions) {
         let Some(tolerance) = options.tolerance_mm else { return };
-        // Written so that a tolerance of 0 or NaN warns whenever anything was rounded.
-        if self.rounding_mm > 0.0 && !(self.rounding_mm <= ROUNDING_SHARE * tolerance) {
+        if self.rounding_mm > ROUNDING_SHARE * tolerance {
             let percent = 100.0 * self.rounding_mm / tolerance;
             self.warnings.push(format!(
                 "rounding to the 32-bit numbers of {} moves vertices by up to {:.3e} mm, {percent:.0} % of the tolerance; \
