@@ -6,9 +6,15 @@ import math
 from pathlib import Path
 
 import cadquery as cq
+from OCP.Quantity import Quantity_Color, Quantity_TOC_RGB
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from case import case
-from loops import O, X, Y, Z, block
+from loops import DOWN, O, X, Y, Z, band, block
 from occ import write_document
 from part21 import Point, Step, real, refs
 
@@ -16,29 +22,42 @@ from part21 import Point, Step, real, refs
 @case("assembly_200", "200 instances of four coloured, named parts in a tree three levels deep", solids=200,
       closed=True)
 def assembly_200(path: Path) -> None:
+    tree = Tree()
     screw = cq.Workplane("XY").circle(2).extrude(8).faces(">Z").workplane().circle(4).extrude(3)
-    washer = cq.Workplane("XY").circle(5).circle(2.2).extrude(1)
     nut = cq.Workplane("XY").polygon(6, 8).extrude(3).faces(">Z").workplane().hole(4)
-    cap = cq.Workplane("XY").box(9, 9, 2).edges("|Z").fillet(2)
-    joint = cq.Assembly(name="joint")
-    for name, part, z, colour in (("screw", screw, 0, "gray"), ("washer", washer, 7, "gold"), ("nut", nut, 1, "red"),
-                                  ("cap", cap, -2, "blue"), ("lower washer", washer, -0.5, "gold")):
-        joint.add(part, name=name, loc=cq.Location((0, 0, z)), color=cq.Color(colour))
-    row = cq.Assembly(name="row of 8")
-    for i in range(8):
-        row.add(joint, name=f"joint {i}", loc=cq.Location((14 * i, 0, 0), (0, 0, 1), 15 * i))
-    top = cq.Assembly(name="panel")
-    for j in range(5):
-        top.add(row, name=f"row {j}", loc=cq.Location((0, 16 * j, 3 * j), (1, 0, 0), 5 * j))
-    _export(top, path)
+    washer = tree.part("washer", cq.Workplane("XY").circle(5).circle(2.2).extrude(1), (0.9, 0.7, 0.1))
+    cap = tree.part("cap", cq.Workplane("XY").box(9, 9, 2).edges("|Z").fillet(2), (0.1, 0.2, 0.8))
+    screw_part, nut_part = tree.part("screw", screw, (0.5, 0.5, 0.5)), tree.part("nut", nut, (0.8, 0.1, 0.1))
+    joint = tree.assembly("joint", [(screw_part, cq.Location()), (washer, cq.Location((0, 0, 7))),
+                                    (nut_part, cq.Location((0, 0, 1))), (cap, cq.Location((0, 0, -2))),
+                                    (washer, cq.Location((0, 0, -0.5)))])
+    row = tree.assembly("row of 8", [(joint, cq.Location((14 * i, 0, 0), (0, 0, 1), 15 * i)) for i in range(8)])
+    tree.assembly("panel", [(row, cq.Location((0, 16 * j, 3 * j), (1, 0, 0), 5 * j)) for j in range(5)])
+    write_document(tree.doc, path)
 
 
-def _export(assembly: cq.Assembly, path: Path) -> None:
-    from cadquery.occ_impl.assembly import toCAF
+class Tree:
+    """An XCAF document in which every part and assembly is defined once."""
 
-    write_document(toCAF(assembly, True)[1], path)
+    def __init__(self) -> None:
+        self.doc = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+        self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.doc.Main())
+        self.colours = XCAFDoc_DocumentTool.ColorTool_s(self.doc.Main())
 
+    def part(self, name: str, work: cq.Workplane, colour: tuple[float, float, float]) -> TDF_Label:
+        label = self.shapes.AddShape(work.val().wrapped, False)
+        self.colours.SetColor(label, Quantity_Color(*colour, Quantity_TOC_RGB), XCAFDoc_ColorSurf)
+        TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+        return label
 
+    def assembly(self, name: str, children: list[tuple[TDF_Label, cq.Location]]) -> TDF_Label:
+        label = self.shapes.NewShape()
+        TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+        for k, (child, location) in enumerate(children):
+            component = self.shapes.AddComponent(label, child, location.wrapped)
+            TDataStd_Name.Set_s(component, TCollection_ExtendedString(f"{name}.{k}"))
+        self.shapes.UpdateAssemblies()
+        return label
 
 
 def hand(s: Step) -> str:
@@ -78,8 +97,6 @@ def mapped_items(path: Path) -> None:
 @case("mapped_cylinder_mirrored", "a mirrored and scaled round part: curved faces under a mirror", solids=2,
       closed=True, faces=6)
 def mapped_cylinder_mirrored(path: Path) -> None:
-    from loops import DOWN, band
-
     s = Step(path.stem)
     low, high = s.ring(O, Z, X, 6), s.ring((0, 0, 15), Z, X, 3)
     side = band(s, s.elementary("CONICAL_SURFACE", O, DOWN, X, 6, math.atan2(3, 15)), (low, True), (high, False))
@@ -95,8 +112,6 @@ def mapped_cylinder_mirrored(path: Path) -> None:
 @case("mixed_units", "a part in inches with angles in degrees, placed twice in an assembly in millimetres", solids=3,
       closed=True, faces=12)
 def mixed_units(path: Path) -> None:
-    from loops import DOWN, band
-
     s = Step(path.stem)
     inches = s.new_context("inch", degrees=True)
     low, high = s.ring(O, Z, X, 0.5), s.ring((0, 0, 1), Z, X, 0.25)

@@ -59,6 +59,8 @@ def normalise(path: Path) -> None:
     text = re.sub(r"FILE_NAME\(.*?\);", f"FILE_NAME('{path.stem}','2026-01-01T00:00:00',(''),(''),'','','');",
                   text, count=1, flags=re.S)
     text = re.sub(r"Open CASCADE STEP translator [\d.]+ [\d.]+", path.stem, text)
+    text = re.sub(r"LOCAL_TIME\(\d+,\d+,", "LOCAL_TIME(0,0,", text)
+    text = re.sub(r"CALENDAR_DATE\(\d+,\d+,\d+\)", "CALENDAR_DATE(2026,1,1)", text)
     path.write_text(text, encoding="latin-1", newline="\n")
 
 
