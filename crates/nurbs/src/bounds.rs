@@ -1,21 +1,84 @@
-//! Bounds of second derivatives over boxes of parameter space: what every proof of a facet rests on.
+//! Enclosures of second derivatives over boxes of parameter space: what every proof of a facet rests on.
+//!
+//! A box is covered by *pieces*, one for each smooth cell of the surface that it meets. A piece holds the exact second
+//! derivatives at its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
+//! Cells of a NURBS surface are its Bézier patches (rational ones subdivided, because their bound is looser).
 
-use crate::{Surface, UvBox};
-use glam::DVec3;
+use crate::{Curve, NurbsSurface, Range, Surface, UvBox};
+use glam::{DVec2, DVec3};
+
+mod net;
 
 /// All vectors within `radius` of `center`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ball {
     pub center: DVec3,
     pub radius: f64,
 }
 
-/// Enclosures of the second derivatives of a surface over a box.
+impl Ball {
+    /// All vectors no longer than `radius`.
+    pub fn around_zero(radius: f64) -> Self {
+        Self { center: DVec3::ZERO, radius }
+    }
+
+    /// The largest |w·x| of a vector x inside, for a unit vector w.
+    fn reach(&self, w: DVec3) -> f64 {
+        self.center.dot(w).abs() + self.radius
+    }
+}
+
+/// Second derivatives over a smooth piece of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SecondDerivativeBounds {
-    pub duu: Ball,
-    pub duv: Ball,
-    pub dvv: Ball,
+pub struct Piece {
+    /// Suu, Suv, Svv at the middle.
+    pub second: [DVec3; 3],
+    /// Enclosures of Suuu, Suuv, Suvv, Svvv.
+    pub third: [Ball; 4],
+    /// Half the extent in u and v.
+    pub half: DVec2,
+}
+
+impl Piece {
+    /// w·(Suu, Suv, Svv) at the middle, and how far they stray from that over the piece.
+    pub fn along(&self, w: DVec3) -> ([f64; 3], [f64; 3]) {
+        let [uuu, uuv, uvv, vvv] = self.third.map(|ball| ball.reach(w));
+        let DVec2 { x: hu, y: hv } = self.half;
+        (self.second.map(|s| s.dot(w)), [uuu * hu + uuv * hv, uuv * hu + uvv * hv, uvv * hu + vvv * hv])
+    }
+}
+
+/// Bounds of the first three derivatives of a profile curve over intervals of its parameter.
+#[derive(Clone, Debug)]
+struct ProfileTable {
+    /// Interval i runs from `breaks[i]` to `breaks[i + 1]`; the curve is smooth in it.
+    breaks: Vec<f64>,
+    /// Norms of the first, second and third derivative per interval.
+    norms: Vec<[f64; 3]>,
+    /// At `breaks[i]`, the jump of the first derivative.
+    jumps: Vec<f64>,
+}
+
+/// Third derivatives over the cells of a NURBS surface.
+#[derive(Clone, Debug)]
+struct CellTable {
+    breaks_u: Vec<f64>,
+    breaks_v: Vec<f64>,
+    /// Cell (i, j) at `i * (breaks_v.len() - 1) + j`.
+    third: Vec<[Ball; 4]>,
+    /// Jumps of Su across `breaks_u[i]` and of Sv across `breaks_v[j]`, the largest along the line.
+    jumps_u: Vec<f64>,
+    jumps_v: Vec<f64>,
+}
+
+#[derive(Clone, Debug)]
+enum Prepared {
+    /// Third derivatives by formula.
+    Elementary,
+    Profile(ProfileTable),
+    Cells(CellTable),
+    /// Nothing can be proven about this kind.
+    Unknown,
 }
 
 /// A surface prepared for quick bounds over many boxes.
@@ -23,17 +86,287 @@ pub struct SecondDerivativeBounds {
 pub struct SurfaceBounds<'a> {
     surface: &'a Surface,
     domain: UvBox,
+    wrap: Wrap,
+    prepared: Prepared,
 }
 
 impl<'a> SurfaceBounds<'a> {
-    /// Prepares bounds for boxes inside `domain`.
+    /// Prepares bounds for boxes inside `domain`, which may reach over the seam of a closed surface.
     pub fn new(surface: &'a Surface, domain: UvBox) -> Self {
-        Self { surface, domain }
+        let wrap = Wrap::of(surface);
+        let inside = |range: Range, wrap: Option<Range>| match wrap {
+            Some(base) if range.start < base.start || range.end > base.end => base,
+            _ => range,
+        };
+        let base = UvBox::from_ranges(inside(domain.u(), wrap.0[0]), inside(domain.v(), wrap.0[1]));
+        let prepared = match surface {
+            Surface::Extrusion { profile, .. } => Prepared::Profile(ProfileTable::new(profile, base.u())),
+            Surface::Revolution { profile, .. } => Prepared::Profile(ProfileTable::new(profile, base.v())),
+            Surface::Nurbs(nurbs) => CellTable::new(nurbs, base).map_or(Prepared::Unknown, Prepared::Cells),
+            Surface::Offset { .. } => Prepared::Unknown,
+            _ => Prepared::Elementary,
+        };
+        Self { surface, domain, wrap, prepared }
     }
+
     pub fn surface(&self) -> &'a Surface {
         self.surface
     }
+
     pub fn domain(&self) -> UvBox {
         self.domain
+    }
+
+    /// False where nothing can be proven: weights that are not positive, offsets of free surfaces.
+    pub fn is_bounded(&self) -> bool {
+        !matches!(self.prepared, Prepared::Unknown)
+    }
+
+    /// Parameters inside the box at which the first derivative jumps: (in u, in v).
+    pub fn creases(&self) -> (Vec<f64>, Vec<f64>) {
+        let pick = |breaks: &[f64], jumps: &[f64]| {
+            (1..breaks.len().saturating_sub(1)).filter(|&i| jumps[i] > 0.0).map(|i| breaks[i]).collect::<Vec<_>>()
+        };
+        match (&self.prepared, self.surface) {
+            (Prepared::Profile(t), Surface::Extrusion { .. }) => (pick(&t.breaks, &t.jumps), Vec::new()),
+            (Prepared::Profile(t), _) => (Vec::new(), pick(&t.breaks, &t.jumps)),
+            (Prepared::Cells(t), _) => (pick(&t.breaks_u, &t.jumps_u), pick(&t.breaks_v, &t.jumps_v)),
+            _ => (Vec::new(), Vec::new()),
+        }
+    }
+
+    /// Appends the pieces that cover `uv_box`; returns the jumps of Su and Sv inside it. No piece: nothing is known.
+    pub fn pieces(&self, uv_box: UvBox, out: &mut Vec<Piece>) -> DVec2 {
+        let mut jump = DVec2::ZERO;
+        let (us, u_count) = wrap_range(uv_box.u(), self.wrap.0[0]);
+        let (vs, v_count) = wrap_range(uv_box.v(), self.wrap.0[1]);
+        for &u in &us[..u_count] {
+            for &v in &vs[..v_count] {
+                jump = jump.max(self.pieces_inside(UvBox::from_ranges(u, v), out));
+            }
+        }
+        jump
+    }
+
+    fn pieces_inside(&self, b: UvBox, out: &mut Vec<Piece>) -> DVec2 {
+        match &self.prepared {
+            Prepared::Unknown => DVec2::ZERO,
+            Prepared::Elementary => {
+                self.push(b, self.elementary_third(b), out);
+                DVec2::ZERO
+            }
+            Prepared::Profile(table) => self.profile_pieces(table, b, out),
+            Prepared::Cells(table) => {
+                let (i0, i1) = overlapped(&table.breaks_u, b.u());
+                let (j0, j1) = overlapped(&table.breaks_v, b.v());
+                let columns = table.breaks_v.len() - 1;
+                for i in i0..i1 {
+                    let u = Range::new(b.min.x.max(table.breaks_u[i]), b.max.x.min(table.breaks_u[i + 1]));
+                    for j in j0..j1 {
+                        let v = Range::new(b.min.y.max(table.breaks_v[j]), b.max.y.min(table.breaks_v[j + 1]));
+                        self.push(UvBox::from_ranges(u, v), table.third[i * columns + j], out);
+                    }
+                }
+                let largest = |jumps: &[f64], from: usize, to: usize| {
+                    jumps[(from + 1).min(to)..to].iter().fold(0.0f64, |m, &j| m.max(j))
+                };
+                DVec2::new(largest(&table.jumps_u, i0, i1), largest(&table.jumps_v, j0, j1))
+            }
+        }
+    }
+
+    fn push(&self, b: UvBox, third: [Ball; 4], out: &mut Vec<Piece>) {
+        let jet = self.surface.jet(b.center());
+        out.push(Piece { second: [jet.duu, jet.duv, jet.dvv], third, half: b.size() * 0.5 });
+    }
+
+    /// Third derivatives of surfaces that are trigonometric in u (and v).
+    fn elementary_third(&self, b: UvBox) -> [Ball; 4] {
+        let ball = Ball::around_zero;
+        match self.surface {
+            Surface::Cylinder { radius, .. } => [ball(*radius), ball(0.0), ball(0.0), ball(0.0)],
+            Surface::Cone { radius, half_angle, .. } => {
+                let t = half_angle.tan();
+                let r = (radius + b.min.y * t).abs().max((radius + b.max.y * t).abs());
+                [ball(r), ball(t.abs()), ball(0.0), ball(0.0)]
+            }
+            Surface::Sphere { radius, .. } => [ball(*radius); 4],
+            Surface::Torus { major, minor, .. } => [ball(major + minor), ball(*minor), ball(*minor), ball(*minor)],
+            _ => [ball(0.0); 4],
+        }
+    }
+
+    fn profile_pieces(&self, table: &ProfileTable, b: UvBox, out: &mut Vec<Piece>) -> DVec2 {
+        let extrusion = matches!(self.surface, Surface::Extrusion { .. });
+        let along = if extrusion { b.u() } else { b.v() };
+        let (from, to) = overlapped(&table.breaks, along);
+        let mut jump = 0.0f64;
+        for i in from..to {
+            let range = Range::new(along.start.max(table.breaks[i]), along.end.min(table.breaks[i + 1]));
+            let [first, second, third] = table.norms[i];
+            let ball = Ball::around_zero;
+            if i > from {
+                jump = jump.max(table.jumps[i]);
+            }
+            if extrusion {
+                let zero = ball(0.0);
+                self.push(UvBox::from_ranges(range, b.v()), [ball(third), zero, zero, zero], out);
+            } else {
+                let piece = UvBox::from_ranges(b.u(), range);
+                let radius = self.largest_radius(piece, first);
+                self.push(piece, [ball(radius), ball(first), ball(second), ball(third)], out);
+            }
+        }
+        if extrusion { DVec2::new(jump, 0.0) } else { DVec2::new(0.0, jump) }
+    }
+
+    /// The largest distance from the axis of a revolution over a box, from its middle and the profile's speed.
+    fn largest_radius(&self, b: UvBox, speed: f64) -> f64 {
+        let Surface::Revolution { axis_origin, axis, .. } = self.surface else { return 0.0 };
+        let d = self.surface.point(b.center()) - *axis_origin;
+        let axis = axis.normalize_or_zero();
+        (d - axis * d.dot(axis)).length() + speed * 0.5 * b.size().y
+    }
+}
+
+/// The ranges of a closed surface to which parameters must be brought back, because it does not repeat by itself as angles do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrap([Option<Range>; 2]);
+
+impl Wrap {
+    pub fn of(surface: &Surface) -> Self {
+        let [period_u, period_v] = surface.periods();
+        let domain = surface.domain();
+        let closed = |period: Option<f64>, range: Range| period.filter(|_| range.is_finite()).map(|_| range);
+        Self(match surface {
+            Surface::Extrusion { .. } => [closed(period_u, domain.u()), None],
+            Surface::Revolution { .. } => [None, closed(period_v, domain.v())],
+            Surface::Nurbs(_) | Surface::Offset { .. } => [closed(period_u, domain.u()), closed(period_v, domain.v())],
+            _ => [None, None],
+        })
+    }
+
+    /// Brings a point of a chart that runs over the seam back to the surface's own domain.
+    pub fn apply(&self, p_uv: DVec2) -> DVec2 {
+        DVec2::new(wrap_into(p_uv.x, self.0[0]), wrap_into(p_uv.y, self.0[1]))
+    }
+}
+
+fn wrap_into(t: f64, base: Option<Range>) -> f64 {
+    match base {
+        Some(base) if !base.contains(t) => {
+            let wrapped = base.start + (t - base.start).rem_euclid(base.length());
+            base.clamp(wrapped)
+        }
+        _ => t,
+    }
+}
+
+/// The parts of the base range that a range covers after wrapping: up to three (all of it, or two ends).
+fn wrap_range(range: Range, base: Option<Range>) -> ([Range; 2], usize) {
+    let Some(base) = base else { return ([range; 2], 1) };
+    if range.start >= base.start && range.end <= base.end {
+        return ([range; 2], 1);
+    }
+    if range.length() >= base.length() {
+        return ([base; 2], 1);
+    }
+    let start = base.start + (range.start - base.start).rem_euclid(base.length());
+    let end = start + range.length();
+    if end <= base.end {
+        return ([Range::new(start, end); 2], 1);
+    }
+    ([Range::new(start, base.end), Range::new(base.start, base.start + (end - base.end))], 2)
+}
+
+/// Indices of the intervals between `breaks` that a range meets in more than a point; at least one.
+fn overlapped(breaks: &[f64], range: Range) -> (usize, usize) {
+    let last = breaks.len() - 1;
+    let slack = 1e-9 * range.length();
+    let from = breaks[1..last].partition_point(|&b| b <= range.start + slack);
+    let to = breaks[1..last].partition_point(|&b| b < range.end - slack);
+    (from, to.max(from) + 1)
+}
+
+/// Splits each interval into `parts`.
+fn subdivided(breaks: &[f64], parts: usize) -> Vec<f64> {
+    let mut fine = Vec::with_capacity((breaks.len() - 1) * parts + 1);
+    for pair in breaks.windows(2) {
+        fine.extend((0..parts).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64));
+    }
+    fine.extend(breaks.last());
+    fine
+}
+
+impl ProfileTable {
+    /// Bounds over quarters of every smooth piece keep the enclosures tight without a search per facet.
+    const PARTS: usize = 4;
+
+    fn new(profile: &Curve, range: Range) -> Self {
+        let mut coarse = vec![range.start];
+        coarse.extend(profile.all_breaks(range));
+        coarse.push(range.end);
+        let breaks = subdivided(&coarse, Self::PARTS);
+        let norms = breaks
+            .windows(2)
+            .map(|p| [1, 2, 3].map(|order| profile.derivative_bound(order, Range::new(p[0], p[1]))))
+            .collect();
+        let jumps = breaks.iter().enumerate().map(|(i, &t)| {
+            if i == 0 || i + 1 == breaks.len() || i % Self::PARTS != 0 {
+                return 0.0;
+            }
+            let step = 1e-9 * (breaks[i + 1] - breaks[i - 1]);
+            let (before, after) = (profile.jet(t - step), profile.jet(t + step));
+            let jump = (after.d1 - before.d1).length();
+            let smooth = 4.0 * step * (after.d2.length() + before.d2.length()) + 1e-9 * after.d1.length();
+            if jump > smooth { jump } else { 0.0 }
+        });
+        let jumps = jumps.collect();
+        Self { breaks, norms, jumps }
+    }
+}
+
+impl CellTable {
+    /// Rational cells are this many times finer in each direction: their bound over a whole patch is loose.
+    const RATIONAL_PARTS: usize = 3;
+
+    /// `None` where a weight is not positive: nothing can be bounded then.
+    fn new(surface: &NurbsSurface, domain: UvBox) -> Option<Self> {
+        let patches = surface.bezier_patches(domain);
+        if patches.iter().any(|(_, p)| p.weights.as_ref().is_some_and(|w| w.iter().any(|&w| w <= 0.0))) {
+            return None;
+        }
+        let distinct = |values: &mut Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+        };
+        let mut spans_u: Vec<f64> = patches.iter().flat_map(|(b, _)| [b.min.x, b.max.x]).collect();
+        let mut spans_v: Vec<f64> = patches.iter().flat_map(|(b, _)| [b.min.y, b.max.y]).collect();
+        distinct(&mut spans_u);
+        distinct(&mut spans_v);
+        let parts = if surface.weights().is_some() { Self::RATIONAL_PARTS } else { 1 };
+        let columns = (spans_v.len() - 1) * parts;
+        let mut third = vec![[Ball::default(); 4]; (spans_u.len() - 1) * parts * columns];
+        let mut jumps_u = vec![0.0; (spans_u.len() - 1) * parts + 1];
+        let mut jumps_v = vec![0.0; columns + 1];
+        let rows = spans_v.len() - 1;
+        for (k, (span, patch)) in patches.iter().enumerate() {
+            let (i, j) = (k / rows, k % rows);
+            for a in 0..parts {
+                for b in 0..parts {
+                    third[(i * parts + a) * columns + j * parts + b] =
+                        net::third_derivatives(patch, *span, (a, b), parts);
+                }
+            }
+            if i > 0 {
+                let jump = net::jump_u(&patches[k - rows], &patches[k]);
+                jumps_u[i * parts] = jump.max(jumps_u[i * parts]);
+            }
+            if j > 0 {
+                let jump = net::jump_v(&patches[k - 1], &patches[k]);
+                jumps_v[j * parts] = jump.max(jumps_v[j * parts]);
+            }
+        }
+        Some(Self { breaks_u: subdivided(&spans_u, parts), breaks_v: subdivided(&spans_v, parts), third, jumps_u, jumps_v })
     }
 }

@@ -30,11 +30,11 @@ mod uv_box;
 mod vector;
 
 pub use bezier::{BezierCurve, BezierPatch};
-pub use bounds::{Ball, SecondDerivativeBounds, SurfaceBounds};
+pub use bounds::{Ball, Piece, SurfaceBounds, Wrap};
 pub use curve::{CompositeSegment, Curve, CurveJet};
 pub use curve2::{Curve2, Curve2Jet};
 pub use error::NurbsError;
-pub use facet::{FacetBound, facet_bound};
+pub use facet::{Facet, FacetBound, facet_bound};
 pub use frame::{Frame, Frame2};
 pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_surface::NurbsSurface;

@@ -1,25 +1,24 @@
 //! From the exact model of a part to a watertight mesh whose distance to it is proven.
+//!
+//! heal parameters ([`chart`], [`unroll`]) → discretise edges ([`edges`]) → size ([`metric`]) → place points ([`place`])
+//! → trim + triangulate ([`triangulate`]) → prove ([`prove`]) → stitch ([`stitch`]).
+//! A face that finds an edge too coarse asks for it; requests are merged per round and only the faces touched run again.
 
-mod options;
+mod chart;
+mod edges;
+mod face;
+mod lower_bound;
 mod metric;
-mod triangulate;
+mod options;
+mod place;
+mod prove;
 mod report;
+mod rounds;
+mod stitch;
+mod surface;
+mod triangulate;
+mod unroll;
 
 pub use options::{Bound, Cancel, Options};
 pub use report::{FaceReport, PartReport, StageSeconds};
-
-use chordal_brep::Part;
-use chordal_mesh::PartMesh;
-
-/// Meshes one part. Never fails as a whole: a face that cannot be meshed is reported with its reason.
-///
-/// `done` is called with the number of faces finished, from any thread, as the work goes on.
-pub fn tessellate_part(
-    part: &Part,
-    options: &Options,
-    cancel: &Cancel,
-    done: &(dyn Fn(usize) + Sync),
-) -> (PartMesh, PartReport) {
-    let _ = (part, options, cancel, done);
-    (PartMesh::default(), PartReport::default())
-}
+pub use rounds::tessellate_part;

@@ -1,6 +1,6 @@
 //! The sizing metric: lengths in it are counted in allowed chords, so an edge of length 1 is as long as it may be.
 
-use chordal_nurbs::DVec2;
+use chordal_nurbs::{DVec2, SurfaceJet};
 
 /// A symmetric positive semi-definite form on parameter space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,5 +34,70 @@ impl Metric {
     pub fn mean<const N: usize>(metrics: [Metric; N]) -> Metric {
         let sum = metrics.iter().fold(Metric::default(), |sum, &m| sum.plus(m, 1.0));
         Metric::default().plus(sum, 1.0 / N as f64)
+    }
+}
+
+/// What an edge of the mesh must not exceed, in the part's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    /// Sagitta of a chord.
+    pub tolerance: f64,
+    /// Turn of the normal between the ends of an edge, radians.
+    pub angle: f64,
+    /// Length of an edge.
+    pub length: f64,
+}
+
+/// The curvature of a surface at a point, ready to be sized.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Sizing {
+    /// |II|/8ε, III/α² and I/L², the largest in each principal direction: an edge of length 1 is as long as allowed.
+    pub metric: Metric,
+    /// II/8ε with its signs.
+    pub signed: Metric,
+    /// Gaussian curvature.
+    pub gauss: f64,
+    /// |Su × Sv|.
+    pub area: f64,
+}
+
+impl Sizing {
+    /// `None` where the surface has no tangent plane (a pole, an apex).
+    pub fn new(jet: &SurfaceJet, limits: &Limits) -> Option<Self> {
+        let cross = jet.du.cross(jet.dv);
+        let area = cross.length();
+        let speed = jet.du.length();
+        if !(area > 1e-12 * jet.du.length_squared().max(jet.dv.length_squared())) || !area.is_finite() {
+            return None;
+        }
+        let n = cross / area;
+        // Orthonormal tangents e1 along Su and e2: Su = a e1, Sv = b e1 + h e2.
+        let (a, b, h) = (speed, jet.du.dot(jet.dv) / speed, area / speed);
+        let (l, m, k) = (n.dot(jet.duu), n.dot(jet.duv), n.dot(jet.dvv));
+        let s11 = l / (a * a);
+        let s12 = (m - s11 * a * b) / (a * h);
+        let s22 = (k - 2.0 * (b / a) * m + (b / a).powi(2) * l) / (h * h);
+        // Principal curvatures and their directions.
+        let mean = 0.5 * (s11 + s22);
+        let half = 0.5 * (s11 - s22);
+        let radius = half.hypot(s12);
+        let (k1, k2) = (mean + radius, mean - radius);
+        let (cosine, sine) = if radius > 0.0 { (half / radius, s12 / radius) } else { (1.0, 0.0) };
+        let size = |k: f64| {
+            let by_sag = k.abs() / (8.0 * limits.tolerance);
+            let by_angle = (k / limits.angle).powi(2);
+            by_sag.max(by_angle).max(1.0 / (limits.length * limits.length))
+        };
+        let (m1, m2) = (size(k1), size(k2));
+        let (c2, s2, cs) = (0.5 * (1.0 + cosine), 0.5 * (1.0 - cosine), 0.5 * sine);
+        let (m11, m12, m22) = (m1 * c2 + m2 * s2, (m1 - m2) * cs, m1 * s2 + m2 * c2);
+        let metric = Metric {
+            uu: m11 * a * a,
+            uv: m11 * a * b + m12 * a * h,
+            vv: m11 * b * b + 2.0 * m12 * b * h + m22 * h * h,
+        };
+        let per = 1.0 / (8.0 * limits.tolerance);
+        let signed = Metric { uu: l * per, uv: m * per, vv: k * per };
+        Some(Self { metric, signed, gauss: k1 * k2, area })
     }
 }

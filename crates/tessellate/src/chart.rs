@@ -1,0 +1,347 @@
+//! Heal parameters, part 1: the loops of a face as polygons in one chart of its parameter space.
+//!
+//! Elementary surfaces have closed-form inversion, so their pcurves are not needed. Elsewhere the file's pcurve is used where it
+//! agrees with the 3D curve, and the samples are projected where it does not. Along a loop parameters are continued
+//! by whole periods; where a loop passes through a pole, both sides' parameters are kept as two chart points of one
+//! vertex.
+
+use crate::edges::EdgeSamples;
+use crate::surface::FaceSurface;
+use chordal_brep::{Coedge, Face, Loop, Part, Pcurve};
+use chordal_nurbs::{DVec2, DVec3};
+
+/// Which mesh vertex a chart point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Key {
+    /// A vertex of the part.
+    Vertex(u32),
+    /// Sample `1..` of an edge.
+    Edge(u32, u32),
+    /// A point of this face alone.
+    Private(u32),
+}
+
+/// What the polygon runs along from one chart point to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Segment {
+    Edge { edge: u32, chord: u32 },
+    /// A cut through the surface that only this face knows; both sides have the same vertices.
+    Seam,
+    /// A line of parameter space that is one point.
+    Pole,
+}
+
+/// A corner of a polygon in the chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ChartPoint {
+    pub uv: DVec2,
+    pub key: Key,
+    /// The segment to the next point.
+    pub segment: Segment,
+}
+
+/// A loop before it is closed in the chart.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OpenLoop {
+    pub points: Vec<ChartPoint>,
+    /// Periods by which the end lies beyond the start.
+    pub winding: [i32; 2],
+    /// The file calls it the outer one.
+    pub outer: bool,
+}
+
+/// What the stages of one face share.
+pub(crate) struct FaceContext<'a> {
+    pub part: &'a Part,
+    pub face: &'a Face,
+    pub surface: &'a FaceSurface<'a>,
+    pub edges: &'a [EdgeSamples],
+    /// Points nearer together than this are the same point.
+    pub resolution: f64,
+}
+
+/// One coedge's samples in the direction of the loop.
+struct Run {
+    uv: Vec<DVec2>,
+    keys: Vec<Key>,
+    chords: Vec<Segment>,
+    /// The pole that the first and last sample lie on.
+    poles: [bool; 2],
+}
+
+impl FaceContext<'_> {
+    /// All loops of the face with the interior on their left in the chart, and the vertices of vertex loops.
+    ///
+    /// # Errors
+    /// A sentence, where a loop cannot be followed.
+    pub fn loops(&self) -> Result<(Vec<OpenLoop>, Vec<u32>), String> {
+        let mut loops = Vec::new();
+        let mut lone = Vec::new();
+        for a_loop in &self.face.loops {
+            match a_loop {
+                Loop::Vertex(v) => lone.push(v.0),
+                Loop::Polygon { vertices, outer } => {
+                    let xyz: Vec<DVec3> = vertices.iter().map(|v| self.part.vertices[v.index()].point).collect();
+                    let uv = self.inverted(&xyz, None);
+                    let points = uv.iter().zip(vertices).map(|(&uv, v)| ChartPoint {
+                        uv,
+                        key: Key::Vertex(v.0),
+                        segment: Segment::Seam,
+                    });
+                    loops.push(OpenLoop { points: points.collect(), winding: [0, 0], outer: *outer });
+                }
+                Loop::Edges { coedges, outer } => {
+                    if let Some(mut open) = self.join(coedges)? {
+                        open.outer = *outer;
+                        loops.push(open);
+                    }
+                }
+            }
+        }
+        for open in &mut loops {
+            open.points = without_repeats(std::mem::take(&mut open.points));
+            if !self.face.same_sense {
+                open.reverse();
+            }
+        }
+        loops.retain(|l| !l.points.is_empty());
+        Ok((loops, lone))
+    }
+
+    fn inverted(&self, xyz: &[DVec3], start: Option<DVec2>) -> Vec<DVec2> {
+        let mut near = start;
+        let mut uv: Vec<DVec2> = Vec::with_capacity(xyz.len());
+        for &p in xyz {
+            let found = self.surface.invert(p, near);
+            near = Some(found);
+            uv.push(found);
+        }
+        uv
+    }
+
+    fn run(&self, coedge: &Coedge, near: Option<DVec2>) -> Option<Run> {
+        let edge = &self.part.edges[coedge.edge.index()];
+        let samples = &self.edges[coedge.edge.index()];
+        let n = samples.sag.len();
+        if n == 0 {
+            return None;
+        }
+        let id = coedge.edge.0;
+        let mut keys: Vec<Key> = (0..=n as u32).map(|i| Key::Edge(id, i)).collect();
+        keys[0] = Key::Vertex(edge.start.0);
+        keys[n] = Key::Vertex(edge.end.0);
+        let mut chords: Vec<Segment> = (0..n as u32).map(|chord| Segment::Edge { edge: id, chord }).collect();
+        let at_pole = |p: DVec3| self.surface.pole_at(p, self.resolution).is_some();
+        let mut poles = [at_pole(samples.points[0]), at_pole(samples.points[n])];
+        let mut uv = self.edge_uv(coedge, samples, near);
+        self.continue_turns(&mut uv);
+        if poles[0] || poles[1] {
+            self.settle_poles(&mut uv, &samples.points, poles);
+        }
+        if !coedge.forward {
+            uv.reverse();
+            keys.reverse();
+            chords.reverse();
+            poles.reverse();
+        }
+        Some(Run { uv, keys, chords, poles })
+    }
+
+    /// Parameters of the samples, in the direction of the edge.
+    fn edge_uv(&self, coedge: &Coedge, samples: &EdgeSamples, near: Option<DVec2>) -> Vec<DVec2> {
+        let project = || {
+            let mut xyz = samples.points.clone();
+            if !coedge.forward {
+                xyz.reverse();
+            }
+            // Begin beside a pole, where parameters are defined.
+            let skip = usize::from(self.surface.pole_at(xyz[0], self.resolution).is_some() && xyz.len() > 2);
+            let mut uv = self.inverted(&xyz[skip..], near);
+            if skip == 1 {
+                uv.insert(0, self.surface.invert(xyz[0], Some(uv[0])));
+            }
+            if !coedge.forward {
+                uv.reverse();
+            }
+            uv
+        };
+        if self.surface.is_elementary() {
+            return project();
+        }
+        let Some((uv, gap)) = self.pcurve_uv(coedge, samples, near) else { return project() };
+        if gap <= self.resolution {
+            return uv;
+        }
+        let projected = project();
+        if self.gap(&projected, samples) < 0.5 * gap { projected } else { uv }
+    }
+
+    fn pcurve_uv(&self, coedge: &Coedge, samples: &EdgeSamples, near: Option<DVec2>) -> Option<(Vec<DVec2>, f64)> {
+        let first = samples.t[0];
+        let length = samples.t[samples.t.len() - 1] - first;
+        let sampled = |p: &Pcurve| -> Vec<DVec2> {
+            let at = |t: f64| p.range.start + (t - first) / length * p.range.length();
+            samples.t.iter().map(|&t| p.curve.point(at(t))).collect()
+        };
+        let mut best: Option<(Vec<DVec2>, f64)> = None;
+        for pcurve in &coedge.pcurves {
+            let uv = sampled(pcurve);
+            if uv.iter().any(|p| !p.is_finite()) {
+                continue;
+            }
+            let gap = self.gap(&uv, samples);
+            let begins = |uv: &[DVec2]| near.map_or(0.0, |n| uv[if coedge.forward { 0 } else { uv.len() - 1 }].distance(n));
+            let better = best.as_ref().is_none_or(|(old, old_gap)| {
+                let similar = gap <= 2.0 * old_gap + self.resolution && *old_gap <= 2.0 * gap + self.resolution;
+                if similar { begins(&uv) < begins(old) } else { gap < *old_gap }
+            });
+            if better {
+                best = Some((uv, gap));
+            }
+        }
+        best
+    }
+
+    fn gap(&self, uv: &[DVec2], samples: &EdgeSamples) -> f64 {
+        uv.iter().zip(&samples.points).fold(0.0, |m, (&uv, p)| m.max(self.surface.point(uv).distance(*p)))
+    }
+
+    /// No step along an edge is longer than half a period.
+    fn continue_turns(&self, uv: &mut [DVec2]) {
+        for i in 1..uv.len() {
+            uv[i] = self.surface.nearest_turn(uv[i], uv[i - 1]);
+        }
+    }
+
+    /// At a pole the collapsed parameter is that of the neighbouring sample.
+    fn settle_poles(&self, uv: &mut [DVec2], xyz: &[DVec3], poles: [bool; 2]) {
+        let last = uv.len() - 1;
+        for (at_pole, i, neighbor) in [(poles[0], 0, 1), (poles[1], last, last - 1)] {
+            if !at_pole || last == 1 && poles[0] && poles[1] {
+                continue;
+            }
+            if let Some(pole) = self.surface.pole_at(xyz[i], self.resolution) {
+                let mut settled = uv[neighbor];
+                settled[pole.axis] = self.nearest_value(pole.value, uv[neighbor][pole.axis], pole.axis);
+                uv[i] = settled;
+            }
+        }
+    }
+
+    fn nearest_value(&self, value: f64, near: f64, axis: usize) -> f64 {
+        self.surface.periods[axis].map_or(value, |p| value + p * ((near - value) / p).round())
+    }
+
+    /// Joins the coedges of a loop.
+    fn join(&self, coedges: &[Coedge]) -> Result<Option<OpenLoop>, String> {
+        let mut runs: Vec<Run> = Vec::with_capacity(coedges.len());
+        let mut near = None;
+        for coedge in coedges {
+            if let Some(run) = self.run(coedge, near) {
+                near = run.uv.last().copied();
+                runs.push(run);
+            }
+        }
+        if runs.is_empty() {
+            return Ok(None);
+        }
+        for i in 0..runs.len() {
+            let after = (i + 1) % runs.len();
+            let (end, start) = (runs[i].keys[runs[i].keys.len() - 1], runs[after].keys[0]);
+            if end != start && runs.len() > 1 {
+                return Err(format!("its loop is not closed between edges {} and {}", i + 1, after + 1));
+            }
+        }
+        // Begin behind a pole, so that the jump along it closes the loop.
+        if let Some(first) = (0..runs.len()).find(|&i| runs[i].poles[0]) {
+            runs.rotate_left(first);
+        }
+        let begins_at_pole = runs[0].poles[0];
+        for i in 1..runs.len() {
+            let (done, rest) = runs.split_at_mut(i);
+            let previous = &done[i - 1];
+            let end = previous.uv[previous.uv.len() - 1];
+            let shift = if previous.poles[1] && rest[0].poles[0] {
+                self.pole_shift(end, rest[0].uv[0])
+            } else {
+                self.surface.nearest_turn(rest[0].uv[0], end) - rest[0].uv[0]
+            };
+            rest[0].uv.iter_mut().for_each(|uv| *uv += shift);
+        }
+        let mut open = OpenLoop::default();
+        for run in &runs {
+            let n = run.uv.len() - 1;
+            open.points.extend((0..n).map(|i| ChartPoint { uv: run.uv[i], key: run.keys[i], segment: run.chords[i] }));
+            if run.poles[1] {
+                open.points.push(ChartPoint { uv: run.uv[n], key: run.keys[n], segment: Segment::Pole });
+            }
+        }
+        let last = &runs[runs.len() - 1];
+        if !begins_at_pole {
+            let turn = last.uv[last.uv.len() - 1] - open.points[0].uv;
+            let whole = |turn: f64, period: Option<f64>| period.map_or(0, |p| (turn / p).round() as i32);
+            open.winding = [whole(turn.x, self.surface.periods[0]), whole(turn.y, self.surface.periods[1])];
+        }
+        Ok(Some(open))
+    }
+
+    /// The whole periods to add behind a pole: the loop runs along the pole with the interior on its left, which is
+    /// against the parameter on the upper side of the surface and with it on the lower.
+    fn pole_shift(&self, end: DVec2, start: DVec2) -> DVec2 {
+        let Some((axis, upper)) = self.pole_side(end) else { return DVec2::ZERO };
+        let along = 1 - axis;
+        let Some(period) = self.surface.periods[along] else { return DVec2::ZERO };
+        // Seen against the face's own sense the loop runs the other way.
+        let down = (upper == (axis == 1)) == self.face.same_sense;
+        let mut step = (start[along] - end[along]).rem_euclid(period);
+        let tiny = 1e-6 * period;
+        if step < tiny || step > period - tiny {
+            step = 0.0;
+        }
+        let step = if down { step - period } else if step == 0.0 { period } else { step };
+        let mut shift = DVec2::ZERO;
+        shift[along] = end[along] + step - start[along];
+        shift
+    }
+
+    /// Which pole line a chart point lies on: (the pole's axis, whether it is the upper end of the domain).
+    fn pole_side(&self, uv: DVec2) -> Option<(usize, bool)> {
+        let nearest = self.surface.poles.iter().min_by(|a, b| {
+            let d = |p: &chordal_nurbs::Pole| (uv[p.axis] - p.value).abs();
+            d(a).total_cmp(&d(b))
+        })?;
+        let others = self.surface.poles.iter().filter(|p| p.axis == nearest.axis && p.value != nearest.value);
+        let domain = self.surface.domain();
+        let middle = if domain.is_finite() { domain.center()[nearest.axis] } else { f64::NAN };
+        let upper = others.map(|p| p.value < nearest.value).next().unwrap_or(nearest.value > middle);
+        Some((nearest.axis, upper))
+    }
+}
+
+impl OpenLoop {
+    /// Runs the loop the other way round.
+    pub fn reverse(&mut self) {
+        let n = self.points.len();
+        if n == 0 {
+            return;
+        }
+        let old = std::mem::take(&mut self.points);
+        // Point i of the reversed loop is old point n−1−i; its segment is the one that led to it.
+        self.points = (0..n)
+            .map(|i| ChartPoint { segment: old[(2 * n - 2 - i) % n].segment, ..old[n - 1 - i] })
+            .collect();
+        self.winding = self.winding.map(|w| -w);
+    }
+}
+
+/// Drops points that repeat their successor's vertex at the same place.
+fn without_repeats(points: Vec<ChartPoint>) -> Vec<ChartPoint> {
+    let n = points.len();
+    (0..n)
+        .filter(|&i| {
+            let next = &points[(i + 1) % n];
+            !(n > 1 && points[i].key == next.key && points[i].uv == next.uv)
+        })
+        .map(|i| points[i])
+        .collect()
+}

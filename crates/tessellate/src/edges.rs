@@ -1,0 +1,256 @@
+//! Discretise edges: each edge exactly once, for the curve and for the demand of every face that uses it.
+//!
+//! The allowed chords per unit of parameter are integrated over the edge; as many chords as that allows are spread evenly
+//! in that measure, and each is then checked by a proven bound. Faces never add boundary vertices on their own: what they find
+//! out later comes back as a request ([`EdgeSamples::split`]).
+
+use crate::metric::{Limits, Sizing};
+use crate::surface::FaceSurface;
+use chordal_brep::{Edge, Part, Pcurve};
+use chordal_nurbs::{Curve, CurveJet, DVec2, DVec3, Range};
+
+/// One edge as a polyline.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct EdgeSamples {
+    /// Parameters, ends included.
+    pub t: Vec<f64>,
+    /// Positions; the first and last are the vertices' own.
+    pub points: Vec<DVec3>,
+    /// Per chord, a bound of its distance to the curve.
+    pub sag: Vec<f64>,
+    /// The fewest chords that the tolerance allows by curvature alone (for the lower bound).
+    pub fewest: f64,
+}
+
+/// A face that uses the edge.
+pub(crate) struct EdgeUse<'a> {
+    pub surface: &'a FaceSurface<'a>,
+    pub pcurve: Option<&'a Pcurve>,
+    /// The diagonal of the box of the face's vertices: how far the face may reach across the edge.
+    pub reach: f64,
+}
+
+/// Chords per probe interval are measured this often.
+const PROBES: usize = 4;
+
+/// Chords along a doubly curved face are this much shorter than allowed: a triangle over a full chord could not reach
+/// across it by any height.
+const DOUBLY_CURVED_CHORD: f64 = 0.9;
+
+/// A kink of the tangent of more than this (radians) is a corner, and a corner is a vertex.
+const CORNER: f64 = 1e-3;
+
+impl EdgeSamples {
+    /// Samples an edge with at least `least` chords.
+    pub fn new(part: &Part, edge: &Edge, uses: &[EdgeUse<'_>], limits: &Limits, least: usize) -> Self {
+        let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
+        let Some(curve) = edge.curve.as_deref() else {
+            return Self { t: vec![edge.range.start], points: vec![ends[0]], sag: Vec::new(), fewest: 0.0 };
+        };
+        let least = if edge.start == edge.end { least.max(3) } else { least };
+        let mut samples = Self::default();
+        samples.t.push(edge.range.start);
+        for smooth in smooth_ranges(curve, edge.range) {
+            samples.add_smooth(curve, smooth, uses, limits);
+        }
+        while samples.t.len() < least + 1 {
+            samples.t = halved(&samples.t);
+        }
+        samples.sag = samples.t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();
+        samples.points = samples.t.iter().map(|&t| curve.point(t)).collect();
+        samples.pin_ends(ends);
+        samples
+    }
+
+    fn pin_ends(&mut self, ends: [DVec3; 2]) {
+        self.points[0] = ends[0];
+        if let Some(last) = self.points.last_mut() {
+            *last = ends[1];
+        }
+    }
+
+    /// Appends the chords of a piece without corners.
+    fn add_smooth(&mut self, curve: &Curve, range: Range, uses: &[EdgeUse<'_>], limits: &Limits) {
+        let probes = Probes::new(curve, range, uses, limits);
+        self.fewest += probes.curvature_total.ceil().max(1.0);
+        let mut count = (probes.total() - 1e-9).ceil().max(1.0) as usize;
+        for _ in 0..8 {
+            let t = probes.spread(count);
+            let worst = t.windows(2).map(|t| curve.chord_error(t[0], t[1])).fold(0.0, f64::max);
+            if worst <= limits.tolerance {
+                self.t.extend_from_slice(&t[1..]);
+                return;
+            }
+            let factor = (worst / limits.tolerance).sqrt().clamp(1.0, 4.0);
+            count = ((count as f64 * factor).ceil() as usize).max(count + 1);
+        }
+        // Uneven beyond what the probes saw: halve the chords that are still too far off.
+        let mut t = probes.spread(count);
+        for _ in 0..24 {
+            let before = t.len();
+            t = split_where(&t, |a, b| curve.chord_error(a, b) > limits.tolerance);
+            if t.len() == before || t.len() > 1_000_000 {
+                break;
+            }
+        }
+        self.t.extend_from_slice(&t[1..]);
+    }
+
+    /// Halves the named chords.
+    pub fn split(&mut self, edge: &Edge, chords: &[u32]) {
+        let Some(curve) = edge.curve.as_deref() else { return };
+        let ends = [self.points[0], self.points[self.points.len() - 1]];
+        let mut k = 0;
+        let mut t = vec![self.t[0]];
+        for pair in self.t.windows(2) {
+            if chords.contains(&k) {
+                t.push(0.5 * (pair[0] + pair[1]));
+            }
+            t.push(pair[1]);
+            k += 1;
+        }
+        self.t = t;
+        self.sag = self.t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();
+        self.points = self.t.iter().map(|&t| curve.point(t)).collect();
+        self.pin_ends(ends);
+    }
+}
+
+fn split_where(t: &[f64], too_far: impl Fn(f64, f64) -> bool) -> Vec<f64> {
+    let mut fine = vec![t[0]];
+    for pair in t.windows(2) {
+        if too_far(pair[0], pair[1]) {
+            fine.push(0.5 * (pair[0] + pair[1]));
+        }
+        fine.push(pair[1]);
+    }
+    fine
+}
+
+fn halved(t: &[f64]) -> Vec<f64> {
+    split_where(t, |_, _| true)
+}
+
+/// Cuts a range at the corners of the curve.
+fn smooth_ranges(curve: &Curve, range: Range) -> Vec<Range> {
+    let mut start = range.start;
+    let mut ranges = Vec::with_capacity(1);
+    for t in curve.breaks(range) {
+        let step = 1e-7 * range.length();
+        let (before, after) = (curve.jet(t - step).d1, curve.jet(t + step).d1);
+        if before.angle_between(after) > CORNER && t > start && t < range.end {
+            ranges.push(Range::new(start, t));
+            start = t;
+        }
+    }
+    ranges.push(Range::new(start, range.end));
+    ranges
+}
+
+/// How many chords per parameter are needed, along one smooth piece.
+struct Probes {
+    t: Vec<f64>,
+    /// Chords needed from the start up to `t[i]`.
+    sum: Vec<f64>,
+    /// The same total by the curve's own curvature alone.
+    curvature_total: f64,
+}
+
+impl Probes {
+    fn new(curve: &Curve, range: Range, uses: &[EdgeUse<'_>], limits: &Limits) -> Self {
+        let mut breaks = vec![range.start];
+        breaks.extend(curve.all_breaks(range));
+        breaks.push(range.end);
+        // Shapes without knots still vary: probe an ellipse or a long edge on a curved face as if it had some.
+        let parts = match (curve, breaks.len()) {
+            (Curve::Line { .. } | Curve::Circle { .. }, _) => 1,
+            (_, 2) => 4,
+            (_, 3..=5) => 2,
+            _ => 1,
+        };
+        let mut probes = Self { t: vec![range.start], sum: vec![0.0], curvature_total: 0.0 };
+        let mut near = vec![None; uses.len()];
+        for pair in breaks.windows(2) {
+            let width = (pair[1] - pair[0]) / (parts * PROBES) as f64;
+            for k in 0..parts * PROBES {
+                let t = pair[0] + (k as f64 + 0.5) * width;
+                let jet = curve.jet(t);
+                let own = own_rate(curve, &jet, limits);
+                let by_faces =
+                    uses.iter().zip(&mut near).map(|(u, near)| u.rate(&jet, t, range, near, limits)).fold(0.0, f64::max);
+                probes.curvature_total += own * width;
+                let last = probes.sum[probes.sum.len() - 1];
+                probes.t.push(pair[0] + (k + 1) as f64 * width);
+                probes.sum.push(last + own.max(by_faces).max(jet.d1.length() / limits.length) * width);
+            }
+        }
+        probes
+    }
+
+    fn total(&self) -> f64 {
+        self.sum[self.sum.len() - 1]
+    }
+
+    /// `count` chords with equal shares of the total.
+    fn spread(&self, count: usize) -> Vec<f64> {
+        let (first, last) = (self.t[0], self.t[self.t.len() - 1]);
+        let total = self.total();
+        let mut t = Vec::with_capacity(count + 1);
+        t.push(first);
+        let mut at = 0;
+        for k in 1..count {
+            let share = k as f64 / count as f64;
+            if total <= 1e-12 {
+                t.push(first + (last - first) * share);
+                continue;
+            }
+            let wanted = total * share;
+            while self.sum[at + 1] < wanted {
+                at += 1;
+            }
+            let step = self.sum[at + 1] - self.sum[at];
+            let inside = if step > 0.0 { (wanted - self.sum[at]) / step } else { 0.5 };
+            t.push(self.t[at] + (self.t[at + 1] - self.t[at]) * inside);
+        }
+        t.push(last);
+        t
+    }
+}
+
+/// Chords per unit of parameter by the curve's curvature: √(κ/8ε)·|c'|; of a circle exactly.
+fn own_rate(curve: &Curve, jet: &CurveJet, limits: &Limits) -> f64 {
+    if let Curve::Circle { radius, .. } = curve {
+        let cosine = (1.0 - limits.tolerance / radius).max(-0.5);
+        return 1.0 / (2.0 * cosine.acos());
+    }
+    let speed = jet.d1.length();
+    if speed > 0.0 { (jet.d1.cross(jet.d2).length() / (8.0 * limits.tolerance * speed)).sqrt() } else { 0.0 }
+}
+
+impl EdgeUse<'_> {
+    /// Chords per unit of parameter that the face asks for.
+    fn rate(&self, jet: &CurveJet, t: f64, range: Range, near: &mut Option<DVec2>, limits: &Limits) -> f64 {
+        if matches!(self.surface.surface, chordal_nurbs::Surface::Plane { .. }) {
+            return 0.0;
+        }
+        let from_file = self.pcurve.filter(|_| !self.surface.is_elementary()).map(|p| {
+            let share = (t - range.start) / range.length();
+            let own = p.range.start + share * p.range.length();
+            p.curve.point(own)
+        });
+        let uv = from_file.unwrap_or_else(|| self.surface.invert(jet.p, *near));
+        *near = Some(uv);
+        let s = self.surface.jet(uv);
+        let Some(sizing) = Sizing::new(&s, limits) else { return 0.0 };
+        // The direction in parameter space that maps to the curve's tangent, by least squares.
+        let (e, f, g) = (s.du.length_squared(), s.du.dot(s.dv), s.dv.length_squared());
+        let (a, b) = (s.du.dot(jet.d1), s.dv.dot(jet.d1));
+        let det = e * g - f * f;
+        let d = DVec2::new((a * g - b * f) / det, (b * e - a * f) / det);
+        let rate = sizing.metric.length(d);
+        // Across the edge the face curves, too, and far enough for a second row.
+        let across = sizing.metric.determinant().max(0.0).sqrt() / sizing.area.max(1e-300) * jet.d1.length() / rate.max(1e-300);
+        let doubly = sizing.gauss > 0.0 && across * self.reach > 0.7;
+        if doubly { rate / DOUBLY_CURVED_CHORD } else { rate }
+    }
+}

@@ -1,0 +1,411 @@
+//! One face: chart → boundary triangulation → points inside → proof, with requests to edges where they are too coarse.
+
+use crate::chart::{FaceContext, Key, Segment};
+use crate::metric::{Limits, Metric, Sizing};
+use crate::options::{Bound, Cancel, Options};
+use crate::place::Rows;
+use crate::prove::{Prover, Verdict};
+use crate::triangulate::{Location, NONE, Triangulation, sweep};
+use crate::unroll::{Chart, SEAM_CHORD};
+use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceBounds, UvBox};
+use std::time::Instant;
+
+/// A face's triangles before vertices are joined with the neighbours'.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FaceResult {
+    pub uv: Vec<DVec2>,
+    pub keys: Vec<Key>,
+    pub normals: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// Positions of the keys that are private.
+    pub private: Vec<DVec3>,
+    pub proven_error: f64,
+    pub gap: f64,
+    pub bound: &'static str,
+    /// c·∫√|K| dA / ε, and the strips of a singly curved face.
+    pub curvature_bound: f64,
+    pub loops: usize,
+}
+
+/// What became of a face in one round.
+pub(crate) enum Outcome {
+    Done(Box<FaceResult>),
+    /// Chords (edge, index) that are too coarse for this face.
+    Finer(Vec<(u32, u32)>),
+    Failed(String),
+}
+
+/// How the interior is filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    Flat,
+    /// Curved in one parameter only, straight in the other: the boundary suffices.
+    Singly { axis: usize },
+    Doubly,
+}
+
+/// Meshes one face with the edges as they are.
+pub(crate) fn mesh_face(context: &FaceContext<'_>, limits: &Limits, options: &Options, cancel: &Cancel) -> Outcome {
+    let mut seam_chord = SEAM_CHORD;
+    for _ in 0..SEAM_TRIES {
+        match FaceWork::run(context, limits, options, cancel, seam_chord) {
+            Ok(Some(outcome)) => return outcome,
+            Ok(None) => seam_chord *= 0.7,
+            Err(reason) => return Outcome::Failed(reason),
+        }
+    }
+    Outcome::Failed("its seam cannot be cut finely enough".into())
+}
+
+/// A seam that proves too coarse is cut finer this often.
+const SEAM_TRIES: usize = 8;
+
+pub(crate) struct FaceWork<'a> {
+    pub context: &'a FaceContext<'a>,
+    pub limits: &'a Limits,
+    pub chart: Chart,
+    pub mesh: Triangulation,
+    pub metrics: Vec<Metric>,
+    /// The surface at each chart vertex (not the mesh vertex, which may lie off it).
+    pub xyz: Vec<DVec3>,
+    pub normals: Vec<DVec3>,
+    /// Regularises metrics that vanish in some direction.
+    floor: f64,
+    shape: Shape,
+}
+
+impl<'a> FaceWork<'a> {
+    /// `None` where the seam must be cut finer.
+    fn run(
+        context: &'a FaceContext<'a>,
+        limits: &'a Limits,
+        options: &Options,
+        cancel: &Cancel,
+        seam_chord: f64,
+    ) -> Result<Option<Outcome>, String> {
+        let started = Instant::now();
+        let chart = Chart::new(context, limits, seam_chord)?;
+        let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
+        let shape = shape(context, limits, UvBox::from_points(points.iter().copied()));
+        let triangles = match boundary_triangles(&points, &chart, shape) {
+            Ok(triangles) => triangles,
+            Err(culprits) => return finer_or_fail(&chart, &culprits).map(Some),
+        };
+        let uv_box = UvBox::from_points(points.iter().copied());
+        let mut work = Self {
+            context,
+            limits,
+            mesh: Triangulation::new(points, triangles),
+            metrics: Vec::new(),
+            xyz: Vec::new(),
+            normals: Vec::new(),
+            floor: 0.0,
+            shape,
+            chart,
+        };
+        work.measure_boundary();
+        work.improve_boundary();
+        if shape == Shape::Doubly {
+            work.place_interior();
+        }
+        let bounds = SurfaceBounds::new(context.surface.surface, uv_box);
+        let deadline = options.face_timeout.map(|t| started + t);
+        let mut prover = Prover::new(&bounds, limits, options, deadline, cancel);
+        let verdict = prover.refine(&mut work)?;
+        match verdict {
+            Verdict::Finer(chords) => Ok(Some(Outcome::Finer(chords))),
+            Verdict::FinerSeam => Ok(None),
+            Verdict::Proven { error, bound } => Ok(Some(Outcome::Done(Box::new(work.finish(error, bound, options))))),
+        }
+    }
+
+    /// Adds the geometry of one chart vertex.
+    fn measure(&mut self, p_uv: DVec2) {
+        let jet = self.context.surface.jet(p_uv);
+        let metric = match Sizing::new(&jet, self.limits) {
+            Some(sizing) => sizing.metric,
+            None => self.metric_beside_pole(p_uv),
+        };
+        let first = Metric { uu: jet.du.length_squared(), uv: jet.du.dot(jet.dv), vv: jet.dv.length_squared() };
+        self.metrics.push(metric.plus(first, self.floor));
+        self.xyz.push(jet.p);
+        self.normals.push(self.context.surface.normal(p_uv));
+    }
+
+    /// At a pole the metric of a point a little further inside.
+    fn metric_beside_pole(&self, p_uv: DVec2) -> Metric {
+        let domain = UvBox::from_points(self.mesh.points.iter().copied());
+        let inside = p_uv.lerp(domain.center(), 0.05);
+        Sizing::new(&self.context.surface.jet(inside), self.limits).map_or(Metric::default(), |s| s.metric)
+    }
+
+    fn measure_boundary(&mut self) {
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        for point in &self.chart.points {
+            let p = self.position(point.key);
+            (low, high) = (low.min(p), high.max(p));
+        }
+        // A hundredth of a chord across the whole face: enough to break ties, too little to matter.
+        let diagonal = (high - low).length().max(f64::MIN_POSITIVE);
+        self.floor = (0.1 / diagonal).powi(2);
+        for i in 0..self.mesh.points.len() {
+            self.measure(self.mesh.points[i]);
+        }
+    }
+
+    pub fn position(&self, key: Key) -> DVec3 {
+        match key {
+            Key::Vertex(v) => self.context.part.vertices[v as usize].point,
+            Key::Edge(e, i) => self.context.edges[e as usize].points[i as usize],
+            Key::Private(k) => self.chart.private[k as usize],
+        }
+    }
+
+    pub fn key(&self, vertex: u32) -> Key {
+        self.chart.points.get(vertex as usize).map_or_else(
+            || Key::Private((self.chart.private.len() + vertex as usize - self.chart.points.len()) as u32),
+            |p| p.key,
+        )
+    }
+
+    /// The boundary segment from one chart vertex to another, where there is one.
+    pub fn segment(&self, a: u32, b: u32) -> Option<Segment> {
+        let &(start, end) = self.chart.loops.iter().find(|&&(start, end)| (start..end).contains(&a))?;
+        let next = if a + 1 == end { start } else { a + 1 };
+        (next == b).then(|| self.chart.points[a as usize].segment)
+    }
+
+    /// Better shaped triangles from the boundary alone.
+    fn improve_boundary(&mut self) {
+        let points = self.mesh.points.clone();
+        match self.shape {
+            Shape::Flat | Shape::Doubly => self.mesh.flip_all(&self.metrics, &|_, _, _, _| true),
+            Shape::Singly { axis } => {
+                // A flip must not widen the turn of its triangles.
+                let width = |t: [u32; 3]| {
+                    let x = t.map(|v| points[v as usize][axis]);
+                    x[0].max(x[1]).max(x[2]) - x[0].min(x[1]).min(x[2])
+                };
+                self.mesh.flip_all(&self.metrics, &|apex, a, b, apex2| {
+                    let before = width([apex, a, b]).max(width([apex2, b, a]));
+                    let after = width([apex, a, apex2]).max(width([apex, apex2, b]));
+                    after <= before * (1.0 + 1e-9)
+                });
+            }
+        }
+        self.mesh.changed.clear();
+    }
+
+    fn place_interior(&mut self) {
+        let rows = Rows::new(self.context.surface, &self.chart, self.limits);
+        let mut hint = 0;
+        for p in rows.insertion_order() {
+            let at = self.mesh.locate(p, hint);
+            let (Location::Inside(t) | Location::OnEdge(t, _)) = at else { continue };
+            hint = t;
+            if self.too_near(t, p) {
+                continue;
+            }
+            self.insert(p, at);
+        }
+        self.mesh.changed.clear();
+    }
+
+    /// Inserts a point that is known to lie inside; returns its index.
+    pub fn insert(&mut self, p: DVec2, at: Location) -> Option<u32> {
+        self.measure(p);
+        let vertex = self.mesh.insert(p, at, &self.metrics);
+        if vertex.is_none() {
+            self.metrics.pop();
+            self.xyz.pop();
+            self.normals.pop();
+        }
+        vertex
+    }
+
+    /// Nearer to the corners of its triangle, or to a boundary edge of it, than rows lie apart.
+    fn too_near(&self, t: u32, p: DVec2) -> bool {
+        let corners = self.mesh.triangles[t as usize];
+        let m = Metric::mean(corners.map(|v| self.metrics[v as usize]));
+        let c = self.mesh.corners(t);
+        if c.iter().any(|&c| m.length(p - c) < 0.45) {
+            return true;
+        }
+        (0..3).any(|i| {
+            if self.mesh.neighbors[t as usize][i] != NONE {
+                return false;
+            }
+            let (a, b) = (c[(i + 1) % 3], c[(i + 2) % 3]);
+            let length = m.length(b - a);
+            // Height over the edge in the metric: area in the metric over the length.
+            let height = m.determinant().max(0.0).sqrt() * (b - a).perp_dot(p - a).abs() / length.max(1e-300);
+            height < 0.3
+        })
+    }
+
+    /// Assembles the result.
+    fn finish(self, error: f64, bound: &'static str, options: &Options) -> FaceResult {
+        let keys: Vec<Key> = (0..self.mesh.points.len() as u32).map(|v| self.key(v)).collect();
+        let mut private = self.chart.private.clone();
+        private.extend_from_slice(&self.xyz[self.chart.points.len()..]);
+        let reversed = self.context.face.normal_reversed();
+        let keep = |t: &&[u32; 3]| {
+            let [a, b, c] = t.map(|v| keys[v as usize]);
+            a != b && b != c && c != a
+        };
+        let triangles = self.mesh.triangles.iter().filter(keep).map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
+        let triangles: Vec<[u32; 3]> = triangles.collect();
+        let mut proven_error = error;
+        for point in &self.chart.points {
+            if let Segment::Edge { edge, chord } = point.segment {
+                proven_error = proven_error.max(self.context.edges[edge as usize].sag[chord as usize]);
+            }
+        }
+        let proven_error = if options.bound == Bound::Proven && error.is_finite() { proven_error } else { f64::NAN };
+        let gap = self.gap();
+        let curvature_bound = self.curvature_bound();
+        let sign = if reversed { -1.0 } else { 1.0 };
+        FaceResult {
+            normals: self.normals.iter().map(|n| *n * sign).collect(),
+            uv: self.mesh.points,
+            keys,
+            triangles,
+            private,
+            proven_error,
+            gap,
+            bound,
+            curvature_bound,
+            loops: self.chart.loops.len(),
+        }
+    }
+
+    /// The largest distance of a boundary vertex, or of the edge half way along a chord, from the surface.
+    fn gap(&self) -> f64 {
+        let mut gap = 0.0f64;
+        for (i, point) in self.chart.points.iter().enumerate() {
+            gap = gap.max(self.position(point.key).distance(self.xyz[i]));
+            let Segment::Edge { edge, chord } = point.segment else { continue };
+            let samples = &self.context.edges[edge as usize];
+            let Some(curve) = self.context.part.edges[edge as usize].curve.as_deref() else { continue };
+            let exact = matches!(self.context.surface.surface, Surface::Plane { .. })
+                && matches!(curve, chordal_nurbs::Curve::Line { .. });
+            if !exact {
+                let p = curve.point(0.5 * (samples.t[chord as usize] + samples.t[chord as usize + 1]));
+                let uv = self.context.surface.invert(p, Some(point.uv));
+                gap = gap.max(self.context.surface.point(uv).distance(p));
+            }
+        }
+        gap
+    }
+
+    /// c·∫√|K| dA / ε over the triangles (DESIGN "Economy"), or the strips of a singly curved face.
+    fn curvature_bound(&self) -> f64 {
+        let limits = Limits { angle: f64::INFINITY, length: f64::INFINITY, ..*self.limits };
+        match self.shape {
+            Shape::Flat => 0.0,
+            Shape::Singly { axis } => {
+                let bounds = UvBox::from_points(self.mesh.points.iter().copied());
+                let mut d = DVec2::ZERO;
+                d[axis] = bounds.size()[axis] / 16.0;
+                let start = { let mut s = bounds.center(); s[axis] = bounds.min[axis]; s };
+                let strips: f64 = (0..16)
+                    .map(|k| {
+                        let jet = self.context.surface.jet(start + d * (f64::from(k) + 0.5));
+                        Sizing::new(&jet, &limits).map_or(0.0, |s| s.metric.length(d))
+                    })
+                    .sum();
+                2.0 * (strips - 1e-9).ceil().max(1.0)
+            }
+            Shape::Doubly => self
+                .mesh
+                .triangles
+                .iter()
+                .map(|t| {
+                    let [a, b, c] = t.map(|v| self.mesh.points[v as usize]);
+                    let jet = self.context.surface.jet((a + b + c) / 3.0);
+                    let area = 0.5 * (b - a).perp_dot(c - a).abs();
+                    Sizing::new(&jet, &limits).map_or(0.0, |s| {
+                        let constant = if s.gauss > 0.0 { 0.3849 } else { 0.2236 };
+                        constant * s.gauss.abs().sqrt() * s.area * area / self.limits.tolerance
+                    })
+                })
+                .sum(),
+        }
+    }
+}
+
+/// How a face of this surface is filled.
+fn shape(context: &FaceContext<'_>, limits: &Limits, uv_box: UvBox) -> Shape {
+    if limits.length.is_finite() {
+        return Shape::Doubly;
+    }
+    match context.surface.surface {
+        Surface::Plane { .. } => Shape::Flat,
+        Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Extrusion { .. } => Shape::Singly { axis: 0 },
+        Surface::Sphere { .. } | Surface::Torus { .. } => Shape::Doubly,
+        _ => sampled_shape(context, limits, uv_box),
+    }
+}
+
+/// A free surface is singly curved where its metric across one parameter stays far below one chord everywhere.
+fn sampled_shape(context: &FaceContext<'_>, limits: &Limits, uv_box: UvBox) -> Shape {
+    const N: usize = 6;
+    let mut extent = [0.0f64; 2];
+    let mut twist = 0.0f64;
+    for i in 0..N {
+        let mut sum = [0.0; 2];
+        for j in 0..N {
+            for axis in 0..2 {
+                let (a, b) = if axis == 0 { (j, i) } else { (i, j) };
+                let at = DVec2::new((a as f64 + 0.5) / N as f64, (b as f64 + 0.5) / N as f64);
+                let jet = context.surface.jet(uv_box.min + uv_box.size() * at);
+                let Some(s) = Sizing::new(&jet, limits) else { continue };
+                let mut d = DVec2::ZERO;
+                d[axis] = uv_box.size()[axis] / N as f64;
+                sum[axis] += s.metric.length(d);
+                let size = uv_box.size();
+                twist = twist.max(s.metric.uv.abs() * size.x * size.y / (N * N) as f64);
+            }
+        }
+        for axis in 0..2 {
+            extent[axis] = extent[axis].max(sum[axis]);
+        }
+    }
+    let small = 0.05;
+    match (extent[0] < small, extent[1] < small) {
+        (true, true) => Shape::Flat,
+        (false, true) => Shape::Singly { axis: 0 },
+        (true, false) => Shape::Singly { axis: 1 },
+        _ => Shape::Doubly,
+    }
+}
+
+fn boundary_triangles(points: &[DVec2], chart: &Chart, shape: Shape) -> Result<Vec<[u32; 3]>, Vec<u32>> {
+    let result = if shape == (Shape::Singly { axis: 1 }) {
+        // A quarter turn keeps the orientation and makes v the direction of the sweep.
+        let turned: Vec<DVec2> = points.iter().map(|p| DVec2::new(p.y, -p.x)).collect();
+        sweep(&turned, &chart.loops)
+    } else {
+        sweep(points, &chart.loops)
+    };
+    result.map_err(|e| vec![e.edge, e.vertex])
+}
+
+/// Chords near a place where loops cross, as a request; where none can be split, a failure.
+fn finer_or_fail(chart: &Chart, culprits: &[u32]) -> Result<Outcome, String> {
+    let mut chords = Vec::new();
+    for &v in culprits {
+        let Some(&(start, end)) = chart.loops.iter().find(|&&(s, e)| (s..e).contains(&v)) else { continue };
+        let before = if v == start { end - 1 } else { v - 1 };
+        for i in [before, v] {
+            if let Segment::Edge { edge, chord } = chart.points[i as usize].segment {
+                chords.push((edge, chord));
+            }
+        }
+    }
+    if chords.is_empty() {
+        return Err("its loops cross each other".into());
+    }
+    Ok(Outcome::Finer(chords))
+}

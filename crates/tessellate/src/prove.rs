@@ -1,0 +1,301 @@
+//! Proof: every triangle gets a bound; one over budget is flipped, gets a point inside, or asks its edge to be finer.
+
+use crate::chart::Segment;
+use crate::face::FaceWork;
+use crate::metric::{Limits, Metric};
+use crate::options::{Bound, Cancel, Options};
+use crate::triangulate::{Location, NONE};
+use chordal_nurbs::{DVec2, Facet, FacetBound, Piece, Surface, SurfaceBounds, facet_bound};
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// The result of refining a face.
+pub(crate) enum Verdict {
+    Proven { error: f64, bound: &'static str },
+    Finer(Vec<(u32, u32)>),
+    /// A seam, which only this face knows, is too coarse.
+    FinerSeam,
+}
+
+pub(crate) struct Prover<'a> {
+    bounds: &'a SurfaceBounds<'a>,
+    limits: &'a Limits,
+    options: &'a Options,
+    deadline: Option<Instant>,
+    cancel: &'a Cancel,
+    scratch: Vec<Piece>,
+    /// Nothing can be bounded on this surface: samples must do.
+    sampled: bool,
+}
+
+/// What is wrong with a triangle.
+enum Fault {
+    None,
+    /// The edge opposite this corner is too long for this face, whatever is done inside.
+    Edge(usize),
+    /// Too far from the surface, or turning too much across the edge opposite the corner.
+    Inside(Option<usize>),
+}
+
+impl<'a> Prover<'a> {
+    pub fn new(
+        bounds: &'a SurfaceBounds<'a>,
+        limits: &'a Limits,
+        options: &'a Options,
+        deadline: Option<Instant>,
+        cancel: &'a Cancel,
+    ) -> Self {
+        let sampled = options.bound == Bound::Estimated || !bounds.is_bounded();
+        Self { bounds, limits, options, deadline, cancel, scratch: Vec::new(), sampled }
+    }
+
+    /// Refines until every triangle is within the limits.
+    ///
+    /// # Errors
+    /// A sentence, where the face is given up.
+    pub fn refine(&mut self, work: &mut FaceWork<'_>) -> Result<Verdict, String> {
+        if matches!(self.bounds.surface(), Surface::Plane { .. }) && self.limits.length.is_infinite() {
+            return Ok(Verdict::Proven { error: 0.0, bound: "plane" });
+        }
+        let mut requests = Vec::new();
+        let mut errors: Vec<f64> = vec![f64::NAN; work.mesh.triangles.len()];
+        let mut queue: VecDeque<u32> = (0..work.mesh.triangles.len() as u32).collect();
+        let budget = 4 * work.mesh.triangles.len() + 20_000;
+        let mut steps = 0usize;
+        while let Some(t) = queue.pop_front() {
+            if !errors[t as usize].is_nan() {
+                continue;
+            }
+            steps += 1;
+            if steps % 256 == 0 {
+                self.check_budget(work)?;
+            }
+            let (error, fault) = self.judge(work, t);
+            errors[t as usize] = error;
+            match fault {
+                Fault::None => continue,
+                Fault::Edge(i) => match self.boundary_segment(work, t, i) {
+                    Some(Segment::Edge { edge, chord }) => requests.push((edge, chord)),
+                    _ => return Ok(Verdict::FinerSeam),
+                },
+                Fault::Inside(edge) => {
+                    if !requests.is_empty() {
+                        // The face runs again with finer edges: no need to fill it now.
+                        continue;
+                    }
+                    if work.mesh.triangles.len() > self.options.face_triangles || steps > 64 * budget {
+                        return Err(format!("it needs more than {} triangles", work.mesh.triangles.len()));
+                    }
+                    if !self.mend(work, t, edge) {
+                        match self.coarse_boundary(work, t) {
+                            Some(chord) => requests.push(chord),
+                            None => return Err("a triangle cannot be brought within the tolerance".into()),
+                        }
+                    }
+                }
+            }
+            errors.resize(work.mesh.triangles.len(), f64::NAN);
+            for t in work.mesh.changed.drain(..) {
+                errors[t as usize] = f64::NAN;
+                queue.push_back(t);
+            }
+        }
+        if !requests.is_empty() {
+            requests.sort_unstable();
+            requests.dedup();
+            return Ok(Verdict::Finer(requests));
+        }
+        let error = errors.iter().fold(0.0f64, |m, &e| m.max(e));
+        let bound = match self.bounds.surface() {
+            _ if self.sampled => "sampled",
+            Surface::Cylinder { .. } => "cylinder",
+            Surface::Cone { .. } => "cone",
+            Surface::Sphere { .. } => "sphere",
+            _ => "second derivatives",
+        };
+        Ok(Verdict::Proven { error: if self.sampled { f64::NAN } else { error }, bound })
+    }
+
+    fn check_budget(&self, work: &FaceWork<'_>) -> Result<(), String> {
+        if self.cancel.is_cancelled() {
+            return Err("cancelled".into());
+        }
+        if self.deadline.is_some_and(|d| Instant::now() > d) {
+            return Err(format!("out of time at {} triangles", work.mesh.triangles.len()));
+        }
+        Ok(())
+    }
+
+    fn facet(work: &FaceWork<'_>, t: u32) -> Facet {
+        let corners = work.mesh.triangles[t as usize];
+        Facet {
+            uv: corners.map(|v| work.mesh.points[v as usize]),
+            xyz: corners.map(|v| work.xyz[v as usize]),
+            boundary: work.mesh.neighbors[t as usize].map(|n| n == NONE),
+        }
+    }
+
+    fn bound(&mut self, work: &FaceWork<'_>, facet: &Facet) -> FacetBound {
+        if self.sampled { sampled_bound(work, facet) } else { facet_bound(self.bounds, facet, &mut self.scratch) }
+    }
+
+    /// A triangle whose corners are not three vertices is not written.
+    fn collapsed(work: &FaceWork<'_>, t: u32) -> bool {
+        let [a, b, c] = work.mesh.triangles[t as usize].map(|v| work.key(v));
+        a == b || b == c || c == a
+    }
+
+    fn judge(&mut self, work: &FaceWork<'_>, t: u32) -> (f64, Fault) {
+        if Self::collapsed(work, t) {
+            return (0.0, Fault::None);
+        }
+        let facet = Self::facet(work, t);
+        let bound = self.bound(work, &facet);
+        let tolerance = self.limits.tolerance;
+        if bound.error > tolerance {
+            let coarse = (0..3).filter(|&i| facet.boundary[i] && bound.edges[i] > tolerance);
+            let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
+            return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
+        }
+        let corners = work.mesh.triangles[t as usize];
+        for i in 0..3 {
+            let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.normals[v as usize]);
+            let length = work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);
+            if turns_too_far(n, m, self.limits.angle) || length > self.limits.length * (1.0 + 1e-9) {
+                let fault = if facet.boundary[i] { Fault::Edge(i) } else { Fault::Inside(Some(i)) };
+                return (bound.error, fault);
+            }
+        }
+        (bound.error, Fault::None)
+    }
+
+    fn boundary_segment(&self, work: &FaceWork<'_>, t: u32, i: usize) -> Option<Segment> {
+        let corners = work.mesh.triangles[t as usize];
+        work.segment(corners[(i + 1) % 3], corners[(i + 2) % 3])
+    }
+
+    /// Flips an edge or inserts a point; false where neither is possible.
+    fn mend(&mut self, work: &mut FaceWork<'_>, t: u32, edge: Option<usize>) -> bool {
+        if edge.is_none() && self.flip_helps(work, t) {
+            return true;
+        }
+        let corners = work.mesh.corners(t);
+        let m = Metric::mean(work.mesh.triangles[t as usize].map(|v| work.metrics[v as usize]));
+        let longest = edge.or_else(|| {
+            let length = |i: usize| m.length(corners[(i + 2) % 3] - corners[(i + 1) % 3]);
+            (0..3).max_by(|&a, &b| length(a).total_cmp(&length(b)))
+        });
+        let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let on_crease = self.crease_point(corners);
+        let at_middle = longest.filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
+        let middle = at_middle.map(|i| corners[(i + 1) % 3].midpoint(corners[(i + 2) % 3]));
+        for p in [on_crease, middle, Some(center)].into_iter().flatten() {
+            let at = work.mesh.locate(p, t);
+            if !matches!(at, Location::Inside(_) | Location::OnEdge(..)) {
+                continue;
+            }
+            if work.insert(p, at).is_some() {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// A place inside the triangle on a line at which the surface has a crease.
+    fn crease_point(&self, corners: [DVec2; 3]) -> Option<DVec2> {
+        let (us, vs) = self.bounds.creases();
+        for (axis, values) in [(0, us), (1, vs)] {
+            for value in values {
+                let side = corners.map(|c| c[axis] - value);
+                let size = side.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+                if side.iter().any(|&s| s > 1e-6 * size) && side.iter().any(|&s| s < -1e-6 * size) {
+                    let cuts: Vec<DVec2> = (0..3)
+                        .filter(|&i| side[i] * side[(i + 1) % 3] < 0.0)
+                        .map(|i| corners[i].lerp(corners[(i + 1) % 3], side[i] / (side[i] - side[(i + 1) % 3])))
+                        .collect();
+                    let mut p = cuts.iter().copied().sum::<DVec2>() / cuts.len().max(1) as f64;
+                    p[axis] = value;
+                    return (!cuts.is_empty()).then_some(p);
+                }
+            }
+        }
+        None
+    }
+
+    /// Flips an inner edge of `t` where both new triangles are within the tolerance.
+    fn flip_helps(&mut self, work: &mut FaceWork<'_>, t: u32) -> bool {
+        for i in 0..3 {
+            let other = work.mesh.neighbors[t as usize][i];
+            if other == NONE {
+                continue;
+            }
+            let c = work.mesh.triangles[t as usize];
+            let (apex, a, b) = (c[i], c[(i + 1) % 3], c[(i + 2) % 3]);
+            let Some(j) = (0..3).find(|&j| work.mesh.neighbors[other as usize][j] == t) else { continue };
+            let apex2 = work.mesh.triangles[other as usize][j];
+            if !work.mesh.can_flip(apex, a, b, apex2) {
+                continue;
+            }
+            let outer = [work.mesh.neighbors[t as usize], work.mesh.neighbors[other as usize]];
+            let facet = |corners: [u32; 3], boundary: [bool; 3]| Facet {
+                uv: corners.map(|v| work.mesh.points[v as usize]),
+                xyz: corners.map(|v| work.xyz[v as usize]),
+                boundary,
+            };
+            // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
+            let first =
+                facet([apex, a, apex2], [outer[1][(j + 1) % 3] == NONE, false, outer[0][(i + 2) % 3] == NONE]);
+            let second =
+                facet([apex, apex2, b], [outer[1][(j + 2) % 3] == NONE, outer[0][(i + 1) % 3] == NONE, false]);
+            let turn = turns_too_far(work.normals[apex as usize], work.normals[apex2 as usize], self.limits.angle);
+            let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
+            let tolerance = self.limits.tolerance;
+            if !turn && !long && self.bound(work, &first).error <= tolerance && self.bound(work, &second).error <= tolerance {
+                work.mesh.flip_edge(t, i);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// A boundary chord of a triangle that nothing else can mend.
+    fn coarse_boundary(&self, work: &FaceWork<'_>, t: u32) -> Option<(u32, u32)> {
+        (0..3).find_map(|i| match self.boundary_segment(work, t, i) {
+            Some(Segment::Edge { edge, chord }) if work.mesh.neighbors[t as usize][i] == NONE => Some((edge, chord)),
+            _ => None,
+        })
+    }
+}
+
+fn turns_too_far(n: chordal_nurbs::DVec3, m: chordal_nurbs::DVec3, limit: f64) -> bool {
+    limit < std::f64::consts::PI
+        && n != chordal_nurbs::DVec3::ZERO
+        && m != chordal_nurbs::DVec3::ZERO
+        && n.dot(m) < (limit * (1.0 + 1e-9)).cos() - 1e-12
+}
+
+/// The largest distance at the middle and along the edges: an estimate, below the truth.
+fn sampled_bound(work: &FaceWork<'_>, facet: &Facet) -> FacetBound {
+    let [a, b, c] = facet.xyz;
+    let Some(n) = (b - a).cross(c - a).try_normalize() else { return FacetBound { error: 0.0, edges: [0.0; 3] } };
+    let at = |weights: [f64; 3]| {
+        let uv = facet.uv[0] * weights[0] + facet.uv[1] * weights[1] + facet.uv[2] * weights[2];
+        work.context.surface.point(uv)
+    };
+    let edges = std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (p, q) = (facet.xyz[j], facet.xyz[k]);
+        let d = q - p;
+        [0.25, 0.5, 0.75].iter().fold(0.0f64, |m, &t| {
+            let mut weights = [0.0; 3];
+            weights[j] = 1.0 - t;
+            weights[k] = t;
+            let x = at(weights) - p;
+            let along = (x.dot(d) / d.length_squared().max(1e-300)).clamp(0.0, 1.0);
+            m.max((x - d * along).length())
+        })
+    });
+    let inside = [[1.0 / 3.0; 3], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
+    let error = inside.iter().fold(0.0f64, |m, &w| m.max((at(w) - a).dot(n).abs()));
+    FacetBound { error: error.max(edges[0]).max(edges[1]).max(edges[2]), edges }
+}

@@ -1,0 +1,273 @@
+//! The stages of one part, top to bottom, and the rounds in which faces ask for finer edges.
+
+use crate::chart::FaceContext;
+use crate::edges::{EdgeSamples, EdgeUse};
+use crate::face::{FaceResult, Outcome, mesh_face};
+use crate::lower_bound::lower_bound;
+use crate::metric::Limits;
+use crate::options::{Cancel, Options};
+use crate::report::{FaceReport, PartReport};
+use crate::stitch::stitch;
+use crate::surface::FaceSurface;
+use chordal_brep::{Edge, Face, FaceGeometry, Loop, Part, Pcurve};
+use chordal_mesh::PartMesh;
+use chordal_nurbs::{Curve, DVec3, Surface};
+use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// Rounds in which faces may ask for finer edges; what is still too coarse then is a reported failure.
+const MAX_ROUNDS: usize = 8;
+
+/// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter.
+const AIM: f64 = 0.995;
+
+/// Points nearer than this share of the tolerance are one point: poles, vertices on them, pcurves that agree.
+const SAME_POINT: f64 = 0.02;
+
+/// Why a face is not even tried.
+fn unusable(face: &Face) -> Option<String> {
+    match &face.geometry {
+        FaceGeometry::Failed(reason) => Some(reason.clone()),
+        FaceGeometry::Surface(_) => None,
+    }
+}
+
+/// What is known about an edge beside its curve.
+#[derive(Default)]
+struct EdgeInfo<'a> {
+    uses: Vec<(usize, Option<&'a Pcurve>)>,
+}
+
+struct Job<'a> {
+    part: &'a Part,
+    limits: Limits,
+    options: &'a Options,
+    cancel: &'a Cancel,
+    resolution: f64,
+    surfaces: Vec<Option<FaceSurface<'a>>>,
+    info: Vec<EdgeInfo<'a>>,
+}
+
+/// Meshes one part. Never fails as a whole: a face that cannot be meshed is reported with its reason.
+///
+/// `done` is called with the number of faces finished, from any thread, as the work goes on.
+pub fn tessellate_part(
+    part: &Part,
+    options: &Options,
+    cancel: &Cancel,
+    done: &(dyn Fn(usize) + Sync),
+) -> (PartMesh, PartReport) {
+    let mut report = PartReport::default();
+    let clock = Instant::now();
+    let resolution = SAME_POINT * options.tolerance;
+    let exact: Vec<Option<std::borrow::Cow<'_, Surface>>> =
+        part.faces.iter().map(|face| exact_surface(face)).collect();
+    let surfaces = exact.iter().map(|s| s.as_deref().map(|s| FaceSurface::new(s, resolution))).collect();
+    let job = Job {
+        part,
+        limits: Limits {
+            tolerance: AIM * options.tolerance,
+            angle: options.angle.unwrap_or(f64::INFINITY),
+            length: options.max_edge.unwrap_or(f64::INFINITY),
+        },
+        options,
+        cancel,
+        resolution,
+        surfaces,
+        info: edge_info(part),
+    };
+    report.seconds.heal = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    let mut edges = job.sample_edges();
+    report.seconds.edges = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    let outcomes = job.rounds(&mut edges, &mut report, done);
+    report.seconds.faces = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    job.describe(&edges, &outcomes, &mut report);
+    let faces: Vec<Option<Box<FaceResult>>> = outcomes.into_iter().map(Result::ok).collect();
+    let mesh = stitch(part, &edges, &faces);
+    report.seconds.stitch = clock.elapsed().as_secs_f64();
+    (mesh, report)
+}
+
+/// The surface to mesh on: offsets of elementary surfaces are elementary themselves.
+fn exact_surface(face: &Face) -> Option<std::borrow::Cow<'_, Surface>> {
+    let FaceGeometry::Surface(surface) = &face.geometry else { return None };
+    Some(match surface.as_ref() {
+        Surface::Offset { .. } => std::borrow::Cow::Owned(surface.as_ref().clone().simplified()),
+        other => std::borrow::Cow::Borrowed(other),
+    })
+}
+
+fn edge_info(part: &Part) -> Vec<EdgeInfo<'_>> {
+    let mut info: Vec<EdgeInfo<'_>> = (0..part.edges.len()).map(|_| EdgeInfo::default()).collect();
+    for (f, face) in part.faces.iter().enumerate() {
+        if unusable(face).is_some() {
+            continue;
+        }
+        for a_loop in &face.loops {
+            let Loop::Edges { coedges, .. } = a_loop else { continue };
+            for coedge in coedges {
+                info[coedge.edge.index()].uses.push((f, coedge.pcurves.first()));
+            }
+        }
+    }
+    info
+}
+
+fn face_reach(part: &Part, face: &Face) -> f64 {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut add = |p: DVec3| (low, high) = (low.min(p), high.max(p));
+    for a_loop in &face.loops {
+        if let Loop::Edges { coedges, .. } = a_loop {
+            for coedge in coedges {
+                let edge = &part.edges[coedge.edge.index()];
+                add(part.vertices[edge.start.index()].point);
+                if let Some(curve) = &edge.curve {
+                    add(curve.point(0.5 * (edge.range.start + edge.range.end)));
+                }
+            }
+        }
+    }
+    if low.is_finite() { (high - low).length() } else { 0.0 }
+}
+
+impl Job<'_> {
+    fn sample(&self, index: usize, reach: &[f64], least: usize) -> EdgeSamples {
+        let info = &self.info[index];
+        if info.uses.is_empty() {
+            return EdgeSamples::default();
+        }
+        let uses: Vec<EdgeUse<'_>> = info
+            .uses
+            .iter()
+            .filter_map(|&(f, pcurve)| {
+                let surface = self.surfaces[f].as_ref()?;
+                Some(EdgeUse { surface, pcurve, reach: reach[f] })
+            })
+            .collect();
+        let edge = &self.part.edges[index];
+        let sampled = catch_unwind(AssertUnwindSafe(|| EdgeSamples::new(self.part, edge, &uses, &self.limits, least)));
+        sampled.unwrap_or_default()
+    }
+
+    fn sample_edges(&self) -> Vec<EdgeSamples> {
+        let reach: Vec<f64> = self.part.faces.iter().map(|face| face_reach(self.part, face)).collect();
+        let mut edges: Vec<EdgeSamples> =
+            (0..self.part.edges.len()).into_par_iter().map(|i| self.sample(i, &reach, 1)).collect();
+        for i in self.twins(&edges) {
+            edges[i] = self.sample(i, &reach, 2);
+        }
+        edges
+    }
+
+    /// Single chords between the same two vertices as another single chord, where the curve is not straight: they would
+    /// enclose nothing.
+    fn twins(&self, edges: &[EdgeSamples]) -> Vec<usize> {
+        let ends = |e: &Edge| (e.start.min(e.end), e.start.max(e.end));
+        let mut single: Vec<_> =
+            (0..edges.len()).filter(|&i| edges[i].sag.len() == 1).map(|i| (ends(&self.part.edges[i]), i)).collect();
+        single.sort_unstable();
+        let mut found = Vec::new();
+        for group in single.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1) {
+            let curved = |&&(_, i): &&(_, usize)| {
+                !matches!(self.part.edges[i].curve.as_deref(), Some(Curve::Line { .. }) | None)
+            };
+            found.extend(group.iter().filter(curved).map(|&(_, i)| i));
+        }
+        found
+    }
+
+    fn mesh_one(&self, index: usize, edges: &[EdgeSamples]) -> Outcome {
+        let face = &self.part.faces[index];
+        if let Some(reason) = unusable(face) {
+            return Outcome::Failed(reason);
+        }
+        let Some(surface) = self.surfaces[index].as_ref() else {
+            return Outcome::Failed("its surface is missing".into());
+        };
+        if self.cancel.is_cancelled() {
+            return Outcome::Failed("cancelled".into());
+        }
+        let context = FaceContext { part: self.part, face, surface, edges, resolution: self.resolution };
+        // The one place where a panic of ours becomes a face's failure.
+        catch_unwind(AssertUnwindSafe(|| mesh_face(&context, &self.limits, self.options, self.cancel)))
+            .unwrap_or_else(|_| Outcome::Failed("internal error".into()))
+    }
+
+    /// Meshes all faces; those that ask for finer edges, and their neighbours, again.
+    fn rounds(
+        &self,
+        edges: &mut [EdgeSamples],
+        report: &mut PartReport,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Vec<Result<Box<FaceResult>, String>> {
+        let n = self.part.faces.len();
+        let mut results: Vec<Result<Box<FaceResult>, String>> = vec![Err(String::new()); n];
+        let mut dirty: Vec<usize> = (0..n).collect();
+        let finished = AtomicUsize::new(0);
+        for round in 0.. {
+            let outcomes: Vec<Outcome> = dirty
+                .par_iter()
+                .map(|&f| {
+                    let outcome = self.mesh_one(f, edges);
+                    if round == 0 {
+                        done(finished.fetch_add(1, Ordering::Relaxed) + 1);
+                    }
+                    outcome
+                })
+                .collect();
+            let mut requests = Vec::new();
+            for (&f, outcome) in dirty.iter().zip(outcomes) {
+                results[f] = match outcome {
+                    Outcome::Done(result) => Ok(result),
+                    Outcome::Failed(reason) => Err(reason),
+                    Outcome::Finer(chords) => {
+                        requests.extend(chords);
+                        Err(format!("its edges were still too coarse after {MAX_ROUNDS} rounds"))
+                    }
+                };
+            }
+            if requests.is_empty() || round == MAX_ROUNDS || self.cancel.is_cancelled() {
+                break;
+            }
+            report.rounds = round + 1;
+            requests.sort_unstable();
+            requests.dedup();
+            dirty.clear();
+            for group in requests.chunk_by(|a, b| a.0 == b.0) {
+                let index = group[0].0 as usize;
+                let chords: Vec<u32> = group.iter().map(|r| r.1).collect();
+                edges[index].split(&self.part.edges[index], &chords);
+                dirty.extend(self.info[index].uses.iter().map(|u| u.0));
+            }
+            dirty.sort_unstable();
+            dirty.dedup();
+        }
+        results
+    }
+
+    fn describe(&self, edges: &[EdgeSamples], outcomes: &[Result<Box<FaceResult>, String>], report: &mut PartReport) {
+        let closed: Vec<bool> = self.part.edges.iter().map(|e| e.start == e.end).collect();
+        for (index, outcome) in outcomes.iter().enumerate() {
+            let mut entry = FaceReport { face: index as u32, bound: "none", proven_error: f64::NAN, ..FaceReport::default() };
+            match outcome {
+                Ok(result) => {
+                    entry.triangles = result.triangles.len();
+                    entry.proven_error = result.proven_error;
+                    entry.gap = result.gap;
+                    entry.bound = result.bound;
+                    entry.lower_bound = lower_bound(&self.part.faces[index], edges, &closed, result.curvature_bound);
+                }
+                Err(reason) => entry.failed = Some(reason.clone()),
+            }
+            report.faces.push(entry);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! A face's surface as the stages see it: charts may run over the seam of a closed surface, evaluation wraps.
+
+use chordal_nurbs::{DVec2, DVec3, Pole, Surface, SurfaceInverter, SurfaceJet, UvBox, Wrap};
+use std::cell::OnceCell;
+
+/// The surface of one face with what is asked of it over and over.
+pub(crate) struct FaceSurface<'a> {
+    pub surface: &'a Surface,
+    pub periods: [Option<f64>; 2],
+    pub poles: Vec<Pole>,
+    wrap: Wrap,
+    inverter: OnceCell<SurfaceInverter<'a>>,
+}
+
+impl<'a> FaceSurface<'a> {
+    /// Control rows closer together than `resolution` count as a pole.
+    pub fn new(surface: &'a Surface, resolution: f64) -> Self {
+        Self {
+            surface,
+            periods: surface.periods(),
+            poles: surface.poles_within(resolution),
+            wrap: Wrap::of(surface),
+            inverter: OnceCell::new(),
+        }
+    }
+
+    pub fn point(&self, p_uv: DVec2) -> DVec3 {
+        self.surface.point(self.wrap.apply(p_uv))
+    }
+
+    pub fn jet(&self, p_uv: DVec2) -> SurfaceJet {
+        self.surface.jet(self.wrap.apply(p_uv))
+    }
+
+    /// The unit normal; where it is undefined, zero.
+    pub fn normal(&self, p_uv: DVec2) -> DVec3 {
+        self.surface.normal(self.wrap.apply(p_uv)).unwrap_or(DVec3::ZERO)
+    }
+
+    /// True for the surfaces whose closest point has a closed form: their pcurves need not be read.
+    pub fn is_elementary(&self) -> bool {
+        use Surface::{Cone, Cylinder, Plane, Sphere, Torus};
+        matches!(self.surface, Plane { .. } | Cylinder { .. } | Cone { .. } | Sphere { .. } | Torus { .. })
+    }
+
+    /// The nearest point's parameters, in the turn nearest to `near`.
+    pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> DVec2 {
+        if self.is_elementary() {
+            return self.surface.invert(p_xyz, near);
+        }
+        let inverter = self.inverter.get_or_init(|| SurfaceInverter::new(self.surface, self.surface.domain()));
+        let uv = inverter.invert(p_xyz, near.map(|n| self.wrap.apply(n))).uv;
+        near.map_or(uv, |near| self.nearest_turn(uv, near))
+    }
+
+    /// The same point of the surface, moved by whole periods to be nearest to `near`.
+    pub fn nearest_turn(&self, p_uv: DVec2, near: DVec2) -> DVec2 {
+        let turn = |t: f64, near: f64, period: Option<f64>| period.map_or(t, |p| t + p * ((near - t) / p).round());
+        DVec2::new(turn(p_uv.x, near.x, self.periods[0]), turn(p_uv.y, near.y, self.periods[1]))
+    }
+
+    /// The pole at this point of space, where there is one within `distance`.
+    pub fn pole_at(&self, p_xyz: DVec3, distance: f64) -> Option<&Pole> {
+        self.poles.iter().find(|pole| pole.point.distance(p_xyz) <= distance)
+    }
+
+    /// The parameter box of the surface itself.
+    pub fn domain(&self) -> UvBox {
+        self.surface.domain()
+    }
+}

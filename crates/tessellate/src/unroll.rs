@@ -1,0 +1,463 @@
+//! Heal parameters, part 2: closed polygons in one chart.
+//!
+//! ```text
+//!   two loops wind round            one winds round a pole           none: the whole surface
+//!
+//!   b───────B────────b'             p═══════pole═══════p'            ┌───────────┐
+//!   │ seam           │ seam         │ seam             │ seam        │ seam      │ seam
+//!   a───────A────────a'             a────────A─────────a'            └───────────┘
+//! ```
+//!
+//! The two sides of a seam have the same vertices, one period apart in the chart; all points of a pole line are one vertex.
+//! The outer loop is found by area, not by what the file calls it.
+
+use crate::chart::{ChartPoint, FaceContext, Key, OpenLoop, Segment};
+use crate::metric::{Limits, Sizing};
+use chordal_nurbs::{DVec2, DVec3, UvBox};
+
+/// The face as polygons: outer loops counter-clockwise, holes clockwise.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Chart {
+    pub points: Vec<ChartPoint>,
+    /// Runs of `points`.
+    pub loops: Vec<(u32, u32)>,
+    /// Positions of the vertices with `Key::Private`.
+    pub private: Vec<DVec3>,
+}
+
+/// A seam or natural side is cut into chords a little shorter than allowed.
+pub(crate) const SEAM_CHORD: f64 = 0.9;
+
+impl Chart {
+    /// Unrolls the face; seams get chords of this length in the metric.
+    ///
+    /// # Errors
+    /// A sentence, where the loops bound no region.
+    pub fn new(context: &FaceContext<'_>, limits: &Limits, seam_chord: f64) -> Result<Self, String> {
+        let (loops, lone) = context.loops()?;
+        let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new() };
+        let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
+        // Two points enclose nothing.
+        plain.retain(|l| l.points.len() > 2);
+        let outer = if !winding.is_empty() {
+            Some(unroll.cut(winding, &plain)?)
+        } else if unroll.needs_natural_boundary(&plain) {
+            Some(unroll.natural_boundary()?)
+        } else {
+            None
+        };
+        let polygons = unroll.nest(outer, plain)?;
+        let mut chart = Chart { private: unroll.private, ..Chart::default() };
+        for polygon in polygons {
+            let start = chart.points.len() as u32;
+            chart.points.extend(polygon);
+            chart.loops.push((start, chart.points.len() as u32));
+        }
+        Ok(chart)
+    }
+}
+
+struct Unroll<'a> {
+    context: &'a FaceContext<'a>,
+    limits: &'a Limits,
+    seam_chord: f64,
+    lone: Vec<u32>,
+    private: Vec<DVec3>,
+}
+
+fn area(points: &[ChartPoint]) -> f64 {
+    let origin = points[0].uv;
+    let n = points.len();
+    (0..n).map(|i| (points[i].uv - origin).perp_dot(points[(i + 1) % n].uv - origin)).sum::<f64>() * 0.5
+}
+
+fn mean(points: &[ChartPoint], axis: usize) -> f64 {
+    points.iter().map(|p| p.uv[axis]).sum::<f64>() / points.len() as f64
+}
+
+fn contains(polygon: &[ChartPoint], p: DVec2) -> bool {
+    let mut inside = false;
+    let n = polygon.len();
+    for i in 0..n {
+        let (a, b) = (polygon[i].uv, polygon[(i + 1) % n].uv);
+        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+fn shifted(points: &[ChartPoint], by: DVec2) -> Vec<ChartPoint> {
+    points.iter().map(|p| ChartPoint { uv: p.uv + by, ..*p }).collect()
+}
+
+fn along_axis(axis: usize, value: f64) -> DVec2 {
+    if axis == 0 { DVec2::new(value, 0.0) } else { DVec2::new(0.0, value) }
+}
+
+impl Unroll<'_> {
+    fn add_private(&mut self, p_uv: DVec2) -> Key {
+        self.private.push(self.context.surface.point(p_uv));
+        Key::Private(self.private.len() as u32 - 1)
+    }
+
+    /// Points strictly between two chart points, as many as the metric asks for.
+    fn between(&self, from: DVec2, to: DVec2) -> Vec<DVec2> {
+        const PROBES: usize = 16;
+        let d = (to - from) / PROBES as f64;
+        let mut sum = vec![0.0];
+        for k in 0..PROBES {
+            let jet = self.context.surface.jet(from + d * (k as f64 + 0.5));
+            let step = Sizing::new(&jet, self.limits).map_or(0.0, |s| s.metric.length(d));
+            sum.push(sum[k] + step);
+        }
+        let total = sum[PROBES];
+        let count = (total / self.seam_chord).ceil().clamp(1.0, 1e5) as usize;
+        let mut at = 0;
+        (1..count)
+            .map(|k| {
+                let wanted = total * k as f64 / count as f64;
+                while sum[at + 1] < wanted {
+                    at += 1;
+                }
+                let step = sum[at + 1] - sum[at];
+                from + d * (at as f64 + if step > 0.0 { (wanted - sum[at]) / step } else { 0.5 })
+            })
+            .collect()
+    }
+
+    /// The polygon of one or two loops that wind round the surface.
+    fn cut(&mut self, mut winding: Vec<OpenLoop>, holes: &[OpenLoop]) -> Result<Vec<ChartPoint>, String> {
+        let axis = usize::from(winding[0].winding[0] == 0);
+        let across = 1 - axis;
+        if winding.iter().any(|l| l.winding[axis].abs() != 1 || l.winding[across] != 0) {
+            return Err("a loop winds round its surface more than once, or both ways".into());
+        }
+        let period = self.context.surface.periods[axis].ok_or("a loop winds round an open surface")?;
+        // Along u the interior is above a loop that runs upwards in u; along v it is on the other side.
+        let is_lower = |l: &OpenLoop| (l.winding[axis] > 0) == (axis == 0);
+        match winding.len() {
+            1 => {
+                let mut a = winding.remove(0);
+                let value = mean(&a.points, across);
+                let pole = |upper: bool| {
+                    let poles = self.context.surface.poles.iter().filter(|p| p.axis == across);
+                    let beyond = poles.filter(|p| (p.value > value) == upper);
+                    beyond.min_by(|p, q| (p.value - value).abs().total_cmp(&(q.value - value).abs())).map(|p| p.value)
+                };
+                let value = match pole(is_lower(&a)) {
+                    Some(value) => value,
+                    None => {
+                        // Nothing closes it on the side it claims: the file has it the wrong way round.
+                        a.reverse();
+                        pole(is_lower(&a)).ok_or("one loop winds round the surface and nothing bounds the other side")?
+                    }
+                };
+                Ok(self.cap(&a, axis, period, value))
+            }
+            2 => {
+                let (a, b) = self.pair(winding, axis);
+                Ok(self.band(&a, &b, axis, period, holes))
+            }
+            n => Err(format!("{n} loops wind round the surface")),
+        }
+    }
+
+    /// The lower loop, and the upper one moved above it.
+    fn pair(&self, mut winding: Vec<OpenLoop>, axis: usize) -> (OpenLoop, OpenLoop) {
+        let across = 1 - axis;
+        let mut b = winding.remove(1);
+        let mut a = winding.remove(0);
+        let is_lower = |l: &OpenLoop| (l.winding[axis] > 0) == (axis == 0);
+        if !is_lower(&a) && is_lower(&b) {
+            std::mem::swap(&mut a, &mut b);
+        }
+        match self.context.surface.periods[across] {
+            Some(period) => {
+                let gap = (mean(&b.points, across) - mean(&a.points, across)).rem_euclid(period);
+                let by = mean(&a.points, across) + gap - mean(&b.points, across);
+                b.points = shifted(&b.points, along_axis(across, by));
+            }
+            // On an open surface the values tell which is lower, whatever the file says.
+            None if mean(&a.points, across) > mean(&b.points, across) => std::mem::swap(&mut a, &mut b),
+            None => {}
+        }
+        if !is_lower(&a) {
+            a.reverse();
+        }
+        if is_lower(&b) {
+            b.reverse();
+        }
+        (a, b)
+    }
+
+    /// `a` from point `i` once round, its first point repeated one period on at the end.
+    fn once_round(a: &OpenLoop, i: usize, axis: usize, period: f64) -> Vec<ChartPoint> {
+        let n = a.points.len();
+        let by = along_axis(axis, period * f64::from(a.winding[axis]));
+        let mut points: Vec<ChartPoint> = a.points[i..].to_vec();
+        points.extend(shifted(&a.points[..i], by));
+        points.push(ChartPoint { uv: a.points[i].uv + by, ..a.points[i] });
+        debug_assert_eq!(points.len(), n + 1);
+        points
+    }
+
+    /// A seam from the end of `polygon` to the chart point `to`, and the keys and places of its inner points.
+    fn seam(&mut self, polygon: &mut Vec<ChartPoint>, to: DVec2) -> Vec<(Key, DVec2)> {
+        let Some(last) = polygon.last_mut() else { return Vec::new() };
+        last.segment = Segment::Seam;
+        let from = last.uv;
+        let inner: Vec<(Key, DVec2)> =
+            self.between(from, to).into_iter().map(|uv| (self.add_private(uv), uv)).collect();
+        polygon.extend(inner.iter().map(|&(key, uv)| ChartPoint { uv, key, segment: Segment::Seam }));
+        inner
+    }
+
+    /// The same seam back, seen from its other side.
+    fn seam_back(polygon: &mut Vec<ChartPoint>, inner: &[(Key, DVec2)], by: DVec2) {
+        if let Some(last) = polygon.last_mut() {
+            last.segment = Segment::Seam;
+        }
+        polygon.extend(inner.iter().rev().map(|&(key, uv)| ChartPoint { uv: uv + by, key, segment: Segment::Seam }));
+    }
+
+    /// The region between a loop and the pole line at `value`.
+    fn cap(&mut self, a: &OpenLoop, axis: usize, period: f64, value: f64) -> Vec<ChartPoint> {
+        let across = 1 - axis;
+        let mut polygon = Self::once_round(a, 0, axis, period);
+        let by = along_axis(axis, -period * f64::from(a.winding[axis]));
+        let mut corner = polygon[polygon.len() - 1].uv;
+        corner[across] = value;
+        let inner = self.seam(&mut polygon, corner);
+        let key = self.pole_key(corner);
+        self.pole_line(&mut polygon, corner, corner + by, key);
+        polygon.push(ChartPoint { uv: corner + by, key, segment: Segment::Seam });
+        Self::seam_back(&mut polygon, &inner, by);
+        polygon
+    }
+
+    fn pole_key(&mut self, p_uv: DVec2) -> Key {
+        let p = self.context.surface.point(p_uv);
+        let near = |v: &&u32| self.context.part.vertices[**v as usize].point.distance(p) <= 10.0 * self.context.resolution;
+        match self.lone.iter().find(near) {
+            Some(&v) => Key::Vertex(v),
+            None => self.add_private(p_uv),
+        }
+    }
+
+    /// Chart points along a pole line, its end not included: neighbours need one each to fan from.
+    fn pole_line(&self, polygon: &mut Vec<ChartPoint>, from: DVec2, to: DVec2, key: Key) {
+        let count = self.pole_points(from, to);
+        polygon.extend((0..count).map(|k| ChartPoint {
+            uv: from.lerp(to, k as f64 / count as f64),
+            key,
+            segment: Segment::Pole,
+        }));
+    }
+
+    /// As many as chords fit round the surface half way to the middle of its domain.
+    fn pole_points(&self, from: DVec2, to: DVec2) -> usize {
+        let along = usize::from((to - from).x == 0.0);
+        let across = 1 - along;
+        let domain = self.context.surface.domain();
+        let mut middle = from.midpoint(to);
+        let inward = if domain.is_finite() { domain.center()[across] } else { middle[across] };
+        middle[across] = 0.5 * (middle[across] + inward);
+        let jet = self.context.surface.jet(middle);
+        let rate = Sizing::new(&jet, self.limits).map_or(0.0, |s| s.metric.length(to - from));
+        (rate / self.seam_chord).ceil().clamp(2.0, 256.0) as usize
+    }
+
+    /// The region between two loops.
+    fn band(&mut self, a: &OpenLoop, b: &OpenLoop, axis: usize, period: f64, holes: &[OpenLoop]) -> Vec<ChartPoint> {
+        let (i, j, turns) = self.bridge(a, b, axis, period, holes);
+        let mut polygon = Self::once_round(a, i, axis, period);
+        let step = along_axis(axis, period * f64::from(a.winding[axis]));
+        // The upper loop begins where the lower one ended, one period on, and runs back.
+        let moved = OpenLoop {
+            points: shifted(&b.points, along_axis(axis, period * turns) + step),
+            winding: b.winding,
+            outer: false,
+        };
+        let back = Self::once_round(&moved, j, axis, period);
+        let inner = self.seam(&mut polygon, back[0].uv);
+        polygon.extend(back);
+        Self::seam_back(&mut polygon, &inner, -step);
+        polygon
+    }
+
+    /// Points of the two loops to cut between, and by how many periods the upper one moves: the shortest cut that crosses no loop.
+    fn bridge(&self, a: &OpenLoop, b: &OpenLoop, axis: usize, period: f64, holes: &[OpenLoop]) -> (usize, usize, f64) {
+        let stride = |n: usize| n.div_ceil(400);
+        let (du, dv) = {
+            let (_, du, dv) = self.context.surface.surface.jet1(a.points[0].uv);
+            (du.length(), dv.length())
+        };
+        let mut candidates = Vec::new();
+        for i in (0..a.points.len()).step_by(stride(a.points.len())) {
+            for j in (0..b.points.len()).step_by(stride(b.points.len())) {
+                let d = b.points[j].uv - a.points[i].uv;
+                let turns = -(d[axis] / period).round();
+                let d = d + along_axis(axis, turns * period);
+                candidates.push(((d.x * du).powi(2) + (d.y * dv).powi(2), i, j, turns));
+            }
+        }
+        candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        let crosses = |&&(_, i, j, turns): &&(f64, usize, usize, f64)| {
+            let (p, q) = (a.points[i].uv, b.points[j].uv + along_axis(axis, turns * period));
+            !holes.iter().any(|hole| crosses_loop(p, q, hole, axis, period))
+        };
+        let best = candidates.iter().take(2000).find(crosses).unwrap_or(&candidates[0]);
+        (best.1, best.2, best.3)
+    }
+
+    /// True for a surface without any boundary of its own whose loops are all holes, and for a face without loops.
+    fn needs_natural_boundary(&self, plain: &[OpenLoop]) -> bool {
+        let Some(largest) = plain.iter().max_by(|a, b| area(&a.points).abs().total_cmp(&area(&b.points).abs())) else {
+            return true;
+        };
+        let closed = |axis: usize| {
+            self.context.surface.periods[axis].is_some()
+                || self.context.surface.poles.iter().filter(|p| p.axis == axis).count() >= 2
+        };
+        closed(0) && closed(1) && area(&largest.points) < 0.0
+    }
+
+    /// The whole domain of the surface.
+    fn natural_boundary(&mut self) -> Result<Vec<ChartPoint>, String> {
+        let domain = self.context.surface.domain();
+        if !domain.is_finite() {
+            return Err("it has no boundary and its surface is unbounded".into());
+        }
+        let UvBox { min, max } = domain;
+        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+        let surface = self.context.surface;
+        let is_pole = |a: DVec2, b: DVec2| {
+            let axis = usize::from(a.y == b.y);
+            let tiny = 1e-9 * (max - min)[axis];
+            surface.poles.iter().any(|p| p.axis == axis && (p.value - a[axis]).abs() <= tiny)
+        };
+        let sides: [(DVec2, DVec2); 4] = std::array::from_fn(|k| (corners[k], corners[(k + 1) % 4]));
+        let poles = sides.map(|(a, b)| is_pole(a, b));
+        let keys = self.corner_keys(&corners, &poles);
+        // Opposite sides of a closed direction share their inner points.
+        let mut inner: [Vec<(Key, DVec2)>; 4] = Default::default();
+        for k in 0..4 {
+            let (from, to) = sides[k];
+            let twin = if k >= 2 && !poles[k] && surface.periods[usize::from(from.y == to.y)].is_some() {
+                Some(k - 2)
+            } else {
+                None
+            };
+            inner[k] = if poles[k] {
+                let count = self.pole_points(from, to);
+                (1..count).map(|i| (keys[k], from.lerp(to, i as f64 / count as f64))).collect()
+            } else if let Some(twin) = twin {
+                let by = to - sides[twin].0;
+                inner[twin].iter().rev().map(|&(key, uv)| (key, uv + by)).collect()
+            } else {
+                self.between(from, to).into_iter().map(|uv| (self.add_private(uv), uv)).collect()
+            };
+        }
+        let mut polygon = Vec::new();
+        for k in 0..4 {
+            let segment = if poles[k] { Segment::Pole } else { Segment::Seam };
+            polygon.push(ChartPoint { uv: corners[k], key: keys[k], segment });
+            polygon.extend(inner[k].iter().map(|&(key, uv)| ChartPoint { uv, key, segment }));
+        }
+        Ok(polygon)
+    }
+
+    /// One key per corner of the domain; corners that poles or closed directions identify share theirs.
+    fn corner_keys(&mut self, corners: &[DVec2; 4], poles: &[bool; 4]) -> [Key; 4] {
+        let [closed_u, closed_v] = self.context.surface.periods.map(|p| p.is_some());
+        let mut group = [0usize, 1, 2, 3];
+        let mut join = |a: usize, b: usize| {
+            let (x, y) = (group[a].min(group[b]), group[a].max(group[b]));
+            group.iter_mut().for_each(|g| *g = if *g == y { x } else { *g });
+        };
+        for k in 0..4 {
+            if poles[k] {
+                join(k, (k + 1) % 4);
+            }
+        }
+        if closed_u {
+            join(0, 1);
+            join(3, 2);
+        }
+        if closed_v {
+            join(0, 3);
+            join(1, 2);
+        }
+        let mut keys = [Key::Private(0); 4];
+        for k in 0..4 {
+            keys[k] = if group[k] == k { self.pole_key(corners[k]) } else { keys[group[k]] };
+        }
+        keys
+    }
+
+    /// Orients the loops, moves holes by whole periods into the outer loop.
+    fn nest(&self, outer: Option<Vec<ChartPoint>>, mut plain: Vec<OpenLoop>) -> Result<Vec<Vec<ChartPoint>>, String> {
+        let outer = match outer {
+            Some(mut polygon) => {
+                if area(&polygon) < 0.0 {
+                    let mut open = OpenLoop { points: polygon, ..OpenLoop::default() };
+                    open.reverse();
+                    polygon = open.points;
+                }
+                polygon
+            }
+            None => {
+                let size = |l: &OpenLoop| area(&l.points).abs();
+                let largest = (0..plain.len()).max_by(|&a, &b| size(&plain[a]).total_cmp(&size(&plain[b])));
+                let mut open = plain.remove(largest.ok_or("none of its loops encloses an area")?);
+                if area(&open.points) < 0.0 {
+                    open.reverse();
+                }
+                open.points
+            }
+        };
+        let mut holes = Vec::with_capacity(plain.len());
+        for mut open in plain {
+            let by = self.shift_into(&outer, &open.points);
+            // A loop outside the outer one is another piece of the face, not a hole.
+            if (area(&open.points) > 0.0) == by.is_some() {
+                open.reverse();
+            }
+            holes.push(shifted(&open.points, by.unwrap_or(DVec2::ZERO)));
+        }
+        let mut polygons = vec![outer];
+        polygons.extend(holes);
+        Ok(polygons)
+    }
+
+    /// The whole periods that bring a loop inside the outer one, if any do.
+    fn shift_into(&self, outer: &[ChartPoint], hole: &[ChartPoint]) -> Option<DVec2> {
+        let [pu, pv] = self.context.surface.periods;
+        let steps = |period: Option<f64>| if period.is_some() { vec![0.0, 1.0, -1.0, 2.0, -2.0] } else { vec![0.0] };
+        for v in steps(pv) {
+            for u in steps(pu) {
+                let by = DVec2::new(u * pu.unwrap_or(0.0), v * pv.unwrap_or(0.0));
+                let inside = hole.iter().filter(|p| contains(outer, p.uv + by)).count();
+                if 2 * inside > hole.len() {
+                    return Some(by);
+                }
+            }
+        }
+        None
+    }
+}
+
+/// True where the segment p–q crosses the loop in any turn.
+fn crosses_loop(p: DVec2, q: DVec2, hole: &OpenLoop, axis: usize, period: f64) -> bool {
+    let n = hole.points.len();
+    let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a) > 0.0;
+    [-1.0, 0.0, 1.0].iter().any(|turn| {
+        let by = along_axis(axis, turn * period);
+        let base = along_axis(axis, period * ((p[axis] - hole.points[0].uv[axis]) / period).round()) + by;
+        (0..n).any(|i| {
+            let (a, b) = (hole.points[i].uv + base, hole.points[(i + 1) % n].uv + base);
+            side(p, q, a) != side(p, q, b) && side(a, b, p) != side(a, b, q)
+        })
+    })
+}
