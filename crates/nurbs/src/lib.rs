@@ -11,6 +11,11 @@ pub use glam::{DAffine3, DVec2, DVec3, DVec4};
 
 mod basis;
 mod bezier;
+mod tensor;
+mod knots;
+mod bezier_patch;
+mod blossom;
+mod bernstein;
 mod bounds;
 mod compose;
 mod convert;
