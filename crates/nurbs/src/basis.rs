@@ -22,10 +22,10 @@ pub(crate) fn check_knots(degree: usize, knots: &[f64], points: usize) -> Result
     if !knots[0].is_finite() {
         return Err(NurbsError::KnotOrder { index: 0, from: knots[0], to: knots[0] });
     }
-    if let Some(i) = (1..knots.len()).find(|&i| !(knots[i] >= knots[i - 1]) || !knots[i].is_finite()) {
+    if let Some(i) = (1..knots.len()).find(|&i| knots[i] < knots[i - 1] || !knots[i].is_finite()) {
         return Err(NurbsError::KnotOrder { index: i, from: knots[i - 1], to: knots[i] });
     }
-    if !(knots[points] > knots[degree]) || !(knots[points] - knots[degree]).is_finite() {
+    if knots[points] <= knots[degree] || !(knots[points] - knots[degree]).is_finite() {
         return Err(NurbsError::EmptyDomain);
     }
     Ok(())

@@ -32,7 +32,7 @@ pub(crate) fn reduced_within<V: Vector>(curve: &BezierCurve<V>, budget: f64) -> 
     while lower.len() > 2 {
         lower = least_squares(&lower);
         let error = distance_bound(curve, &net, &lower);
-        if !(error <= budget) {
+        if error > budget || error.is_nan() {
             break;
         }
         best = Some((lower.clone(), error));

@@ -21,6 +21,7 @@ mod compose;
 mod convert;
 mod curve;
 mod curve2;
+mod curve_bounds;
 mod degree;
 mod error;
 mod facet;

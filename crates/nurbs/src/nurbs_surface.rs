@@ -190,34 +190,3 @@ impl NurbsSurface {
         self.points.iter().map(|p| p.distance(self.points[0])).fold(0.0, f64::max)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    #[ignore = "a measurement"]
-    fn speed() {
-        let knots = vec![0.0, 0.0, 0.0, 0.0, 0.3, 0.5, 1.0, 1.0, 1.0, 1.0];
-        let points: Vec<DVec3> =
-            (0..36).map(|k| DVec3::new((k / 6) as f64, (k % 6) as f64, (k as f64).sin())).collect();
-        for weights in [None, Some((0..36).map(|k| 1.0 + 0.1 * f64::from(k % 5)).collect::<Vec<_>>())] {
-            let s = NurbsSurface::new([3, 3], knots.clone(), knots.clone(), points.clone(), weights).unwrap();
-            let n = 1_000_000;
-            let start = std::time::Instant::now();
-            let mut sum = DVec3::ZERO;
-            for k in 0..n {
-                let t = f64::from(k) / f64::from(n);
-                let jet = s.jet(std::hint::black_box(DVec2::new(t, 1.0 - t)));
-                sum += jet.p + jet.duv + jet.duu + jet.dvv;
-            }
-            eprintln!("jet {:?}/call {sum}", start.elapsed() / n as u32);
-            let start = std::time::Instant::now();
-            for k in 0..n {
-                let t = f64::from(k) / f64::from(n);
-                sum += s.point(std::hint::black_box(DVec2::new(t, 1.0 - t)));
-            }
-            eprintln!("point {:?}/call {sum}", start.elapsed() / n as u32);
-        }
-    }
-}

@@ -1,4 +1,5 @@
 //! Points and derivatives of B-splines against independent ways to get them.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 use chordal_nurbs::*;
