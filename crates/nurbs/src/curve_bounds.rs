@@ -36,7 +36,7 @@ impl<V: Vector> NurbsCurve<V> {
             .collect();
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return 0.0 };
         let chord = (first.points[0], last.points[last.degree()]);
-        let far = pieces.iter().map(|piece| distance_to_segment(piece, chord)).fold(0.0, f64::max);
+        let far = largest(pieces.iter().map(|piece| distance_to_segment(piece, chord)));
         far + rounding(self.degree()) * (origin.norm() + size(pieces.iter()))
     }
 
@@ -45,15 +45,14 @@ impl<V: Vector> NurbsCurve<V> {
     /// `order` 0 bounds the norm of the points themselves.
     pub fn derivative_bound(&self, order: usize, range: Range) -> f64 {
         let (range, spans) = self.spans_of(range);
-        let largest = spans.iter().map(|&s| {
+        largest(spans.iter().map(|&s| {
             let span = Range::new(self.knots()[s], self.knots()[s + 1]);
             let part = widened(Range::new(range.start.max(span.start), range.end.min(span.end)), span);
             let origin = self.points()[s];
             let piece = self.local_piece(s, part, origin);
             let shift = if order == 0 { origin.norm() } else { 0.0 };
             shift + piece.derivative_bound(order) / part.length().powi(order as i32)
-        });
-        largest.fold(0.0, f64::max)
+        }))
     }
 
     /// The range put in order and cut to the domain, and the spans that it meets (at least one).
@@ -95,7 +94,7 @@ impl<V: Vector> BezierCurve<V> {
         }
         let (first, last) = (self.points[0], self.points[n]);
         let far = (1..n).map(|i| (self.points[i] - first - (last - first) * (i as f64 / n as f64)).norm());
-        far.fold(0.0, f64::max) * (1.0 - ends_share(n)) + rounding(n) * size([self])
+        largest(far) * (1.0 - ends_share(n)) + rounding(n) * size([self])
     }
 
     /// Upper bound of the norm of derivative `order` by the curve's own parameter over 0..=1.
@@ -113,6 +112,11 @@ impl<V: Vector> BezierCurve<V> {
     }
 }
 
+/// The largest of some non-negative values; infinity where one is not a number, so that no overflow passes as proof.
+pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |most, value| if value.is_nan() { f64::INFINITY } else { most.max(value) })
+}
+
 /// The share of the polynomial basis that its two ends hold at least.
 fn ends_share(degree: usize) -> f64 {
     0.5f64.powi(degree as i32 - 1).min(1.0)
@@ -124,7 +128,7 @@ fn rounding(degree: usize) -> f64 {
 }
 
 fn size<'a, V: Vector + 'a>(pieces: impl IntoIterator<Item = &'a BezierCurve<V>>) -> f64 {
-    pieces.into_iter().flat_map(|piece| &piece.points).map(|p| p.norm()).fold(0.0, f64::max)
+    largest(pieces.into_iter().flat_map(|piece| &piece.points).map(|p| p.norm()))
 }
 
 /// `part` grown inside `span` to the shortest share of it.
@@ -154,7 +158,7 @@ fn hull_distance<V: Vector>(piece: &BezierCurve<V>, (a, b): (V, V)) -> f64 {
     let n = piece.degree();
     let distance = |i: usize| segment_distance(piece.points[i], a, b);
     let ends = distance(0).max(distance(n));
-    let inner = (1..n).map(distance).fold(0.0, f64::max);
+    let inner = largest((1..n).map(distance));
     if inner <= ends {
         return ends;
     }
@@ -186,8 +190,8 @@ fn polynomial_derivative_bound<V: Vector>(points: &[V], order: usize) -> f64 {
     for _ in 0..order {
         net = blossom::hodograph(&net);
     }
-    let largest = |net: &[V]| net.iter().map(|p| p.norm()).fold(0.0, f64::max);
-    largest(&net) + rounding(degree) * (2.0 * degree as f64).powi(order as i32) * largest(points)
+    let norms = |net: &[V]| largest(net.iter().map(|p| p.norm()));
+    norms(&net) + rounding(degree) * (2.0 * degree as f64).powi(order as i32) * norms(points)
 }
 
 fn rational_derivative_bound<V: Vector>(points: &[V], weights: &[f64], order: usize) -> f64 {
@@ -211,13 +215,13 @@ fn rational_derivative_bound<V: Vector>(points: &[V], weights: &[f64], order: us
     }
     // 3. Quotients of coefficients at one degree.
     let numerator = bernstein::elevated(&numerator, order);
-    let quotient = numerator.iter().zip(&denominator).map(|(a, b)| a.norm() / b).fold(0.0, f64::max);
+    let quotient = largest(numerator.iter().zip(&denominator).map(|(a, b)| a.norm() / b));
     // 4. Rounding: each step multiplies by at most 2n and by the weights.
     let (mut least, mut most) = (f64::INFINITY, 0.0f64);
     for i in 0..=n {
         (least, most) = (least.min(weight(i)), most.max(weight(i)));
     }
-    let reach = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let reach = largest(points.iter().map(|p| p.norm()));
     let steps = (2.0 * n as f64).powi(order as i32) * (most / least).powi(order as i32 + 1);
     quotient + 2.0 * rounding(n * (order + 1)) * steps * reach
 }

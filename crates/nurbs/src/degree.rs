@@ -12,6 +12,7 @@
 //! curves differ by at most `max ‖P_i − Q_i‖`. Rational curves do so in homogeneous coordinates, where with `N/W` the
 //! old and `M/Z` the new curve `N/W − M/Z = ((N − M) − (M/Z)(W − Z)) / W`.
 
+use crate::curve_bounds::largest;
 use crate::homogeneous::Homogeneous;
 use crate::{BezierCurve, Vector, blossom};
 
@@ -123,9 +124,8 @@ fn distance_bound<V: Vector>(
     while raised.len() < net.len() {
         raised = blossom::elevate(&raised);
     }
-    let gap =
-        |f: fn(Homogeneous<V>) -> f64| net.iter().zip(&raised).map(|(a, b)| f(*a - *b)).fold(0.0, f64::max);
-    let size = curve.points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let gap = |f: fn(Homogeneous<V>) -> f64| largest(net.iter().zip(&raised).map(|(a, b)| f(*a - *b)));
+    let size = largest(curve.points.iter().map(|p| p.norm()));
     let rounding = 4.0 * f64::EPSILON * size * (net.len() + 2) as f64;
     let Some(weights) = &curve.weights else {
         return gap(|d| d.v.norm()) + rounding;
@@ -135,7 +135,7 @@ fn distance_bound<V: Vector>(
     if !(old > 0.0 && new > 0.0) {
         return f64::INFINITY;
     }
-    let largest = weights.iter().copied().fold(0.0, f64::max);
-    let reach = lower.iter().map(|h| h.project().norm()).fold(0.0, f64::max);
-    (gap(|d| d.v.norm()) + reach * gap(|d| d.w.abs())) / old + rounding * (largest / old)
+    let heaviest = largest(weights.iter().copied());
+    let reach = largest(lower.iter().map(|h| h.project().norm()));
+    (gap(|d| d.v.norm()) + reach * gap(|d| d.w.abs())) / old + rounding * (heaviest / old)
 }
