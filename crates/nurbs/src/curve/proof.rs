@@ -1,0 +1,1 @@
+//! Bounds of derivatives and of the distance between a piece of a curve and its chord.
