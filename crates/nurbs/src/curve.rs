@@ -8,12 +8,12 @@ mod transform;
 
 use crate::conic::{self, Jet3};
 use crate::{Curve2, Frame, NurbsCurve3, Range, Surface};
+pub(crate) use breaks::{ANY, repeat_over, surface_lines, tidy};
 use glam::DVec3;
-pub(crate) use breaks::{repeat_over, surface_lines, tidy};
 pub(crate) use offset::unit_jet;
-pub(crate) use transform::similarity;
 use std::f64::consts::TAU;
 use std::sync::Arc;
+pub(crate) use transform::similarity;
 
 /// A point of a curve with its first two derivatives by the parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,7 +153,8 @@ impl Curve {
             Curve::Offset { basis, .. } => basis.period(),
             Curve::Polyline(_) | Curve::Nurbs(_) | Curve::Composite(_) | Curve::OnSurface { .. } => {
                 let domain = self.domain();
-                (domain.is_finite() && domain.length() > 0.0 && self.ends_meet(domain)).then(|| domain.length())
+                (domain.is_finite() && domain.length() > 0.0 && self.ends_meet(domain))
+                    .then(|| domain.length())
             }
         }
     }
@@ -169,7 +170,11 @@ impl Curve {
     /// `t` itself, or for a closed free-form curve the same place within the domain.
     pub(crate) fn inside(&self, t: f64) -> f64 {
         let domain = self.domain();
-        if domain.contains(t) || self.period().is_none() { t } else { conic::wrapped(t, domain.start, domain.end) }
+        if domain.contains(t) || self.period().is_none() {
+            t
+        } else {
+            conic::wrapped(t, domain.start, domain.end)
+        }
     }
 
     fn ends_meet(&self, domain: Range) -> bool {

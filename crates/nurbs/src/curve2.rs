@@ -138,7 +138,7 @@ impl Curve2 {
 
     /// All knots, corners and joints strictly inside `range`, in increasing order.
     pub fn all_breaks(&self, range: Range) -> Vec<f64> {
-        self.breaks_below(range, usize::MAX)
+        self.breaks_below(range, crate::curve::ANY)
     }
 
     /// Parameters inside `range` where the curve may not be `continuity` times continuously differentiable.
@@ -178,7 +178,9 @@ impl Curve2 {
     /// [`Curve2::to_nurbs`] first.
     pub fn scaled(&self, by: DVec2) -> Option<Curve2> {
         Some(match self {
-            Curve2::Line { origin, direction } => Curve2::Line { origin: *origin * by, direction: *direction * by },
+            Curve2::Line { origin, direction } => {
+                Curve2::Line { origin: *origin * by, direction: *direction * by }
+            }
             Curve2::Circle { frame, radius } => scaled_ellipse(frame, *radius, *radius, by)?,
             Curve2::Ellipse { frame, a, b } => scaled_ellipse(frame, *a, *b, by)?,
             Curve2::Parabola { frame, focal } => {
@@ -195,7 +197,10 @@ impl Curve2 {
             Curve2::Polyline(points) => Curve2::Polyline(points.iter().map(|p| *p * by).collect()),
             Curve2::Nurbs(curve) => Curve2::Nurbs(curve.mapped(|p| p * by)),
             Curve2::Composite(pieces) => Curve2::Composite(
-                pieces.iter().map(|(c, start, end)| Some((c.scaled(by)?, *start, *end))).collect::<Option<_>>()?,
+                pieces
+                    .iter()
+                    .map(|(c, start, end)| Some((c.scaled(by)?, *start, *end)))
+                    .collect::<Option<_>>()?,
             ),
             Curve2::Offset { basis, distance } => {
                 if by.x.abs() != by.y.abs() {
@@ -212,7 +217,9 @@ impl Curve2 {
     pub fn translated(&self, by: DVec2) -> Curve2 {
         let moved = |frame: &Frame2| Frame2 { origin: frame.origin + by, ..*frame };
         match self {
-            Curve2::Line { origin, direction } => Curve2::Line { origin: *origin + by, direction: *direction },
+            Curve2::Line { origin, direction } => {
+                Curve2::Line { origin: *origin + by, direction: *direction }
+            }
             Curve2::Circle { frame, radius } => Curve2::Circle { frame: moved(frame), radius: *radius },
             Curve2::Ellipse { frame, a, b } => Curve2::Ellipse { frame: moved(frame), a: *a, b: *b },
             Curve2::Parabola { frame, focal } => Curve2::Parabola { frame: moved(frame), focal: *focal },
@@ -239,7 +246,11 @@ impl Curve2 {
 
     pub(crate) fn inside(&self, t: f64) -> f64 {
         let domain = self.domain();
-        if domain.contains(t) || self.period().is_none() { t } else { conic::wrapped(t, domain.start, domain.end) }
+        if domain.contains(t) || self.period().is_none() {
+            t
+        } else {
+            conic::wrapped(t, domain.start, domain.end)
+        }
     }
 }
 

@@ -36,6 +36,8 @@ mod nurbs_surface;
 mod surface;
 mod uv_box;
 mod vector;
+#[cfg(test)]
+mod zoo;
 
 pub use bezier::{BezierCurve, BezierPatch};
 pub use bounds::{Ball, SecondDerivativeBounds, SurfaceBounds};

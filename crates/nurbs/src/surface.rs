@@ -244,7 +244,7 @@ impl Surface {
 
     /// All knot lines strictly inside `uv`: between them the surface is analytic.
     pub fn all_breaks(&self, uv: UvBox) -> [Vec<f64>; 2] {
-        crate::curve::surface_lines(self, uv, usize::MAX)
+        crate::curve::surface_lines(self, uv, crate::curve::ANY)
     }
 
     /// `p_uv`, or for a closed free-form direction the same place within the domain.

@@ -3,8 +3,8 @@
 use crate::{Curve, Curve2, Range, Surface, UvBox};
 use glam::DVec2;
 
-/// Continuity order that no knot reaches: asks for every knot.
-const ANY: usize = usize::MAX;
+/// More continuity than any knot of the largest degree leaves: asks for every knot.
+pub(crate) const ANY: usize = 2 * crate::basis::MAX_DEGREE;
 
 /// Samples of a curve in parameter space between which one crossing of a knot line is looked for.
 const CROSSING_SAMPLES: usize = 64;
@@ -86,7 +86,8 @@ pub(crate) fn repeat_over(range: Range, period: Option<f64>, own: Vec<f64>, star
 
 /// Sorts, drops what is outside or at the ends of `range`, and drops repetitions.
 pub(crate) fn tidy(mut breaks: Vec<f64>, range: Range) -> Vec<f64> {
-    let scale = [range.start, range.end].iter().filter(|t| t.is_finite()).fold(0.0, |m: f64, t| m.max(t.abs()));
+    let scale =
+        [range.start, range.end].iter().filter(|t| t.is_finite()).fold(0.0, |m: f64, t| m.max(t.abs()));
     let length = if range.is_finite() { range.length() } else { 1.0 };
     // A few rounding errors of the parameter, so that no empty piece remains.
     let gap = (8.0 * f64::EPSILON * scale).max(1e-12 * length);

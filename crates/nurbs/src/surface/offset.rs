@@ -17,7 +17,9 @@ impl Surface {
             Some(exact) => exact,
             None => match basis {
                 // Normals of an offset are those of its basis.
-                Surface::Offset { basis, distance: inner } => Surface::Offset { basis, distance: inner + distance },
+                Surface::Offset { basis, distance: inner } => {
+                    Surface::Offset { basis, distance: inner + distance }
+                }
                 basis => Surface::Offset { basis: Box::new(basis), distance },
             },
         }
@@ -48,7 +50,9 @@ fn moved(basis: &Surface, distance: f64) -> Option<Surface> {
             Some(Surface::Sphere { frame: *frame, radius: radius + distance })
         }
         // The normal turns over where the tube crosses the axis, so lemons and apples stay offsets.
-        Surface::Torus { frame, major, minor } if *minor > 0.0 && major >= minor && minor + distance > 0.0 => {
+        Surface::Torus { frame, major, minor }
+            if *minor > 0.0 && major >= minor && minor + distance > 0.0 =>
+        {
             Some(Surface::Torus { frame: *frame, major: *major, minor: minor + distance })
         }
         _ => None,

@@ -70,8 +70,14 @@ impl Surface {
             }
             Surface::Nurbs(nurbs) => nurbs_poles(nurbs, tolerance),
             Surface::Offset { basis, distance } => {
-                let kept = |pole: &Pole| self.line_collapses(pole.axis, pole.value, tolerance.max(CLOSED * distance.abs()));
-                basis.poles_within(tolerance).into_iter().filter_map(|p| kept(&p).map(|point| Pole { point, ..p })).collect()
+                let kept = |pole: &Pole| {
+                    self.line_collapses(pole.axis, pole.value, tolerance.max(CLOSED * distance.abs()))
+                };
+                basis
+                    .poles_within(tolerance)
+                    .into_iter()
+                    .filter_map(|p| kept(&p).map(|point| Pole { point, ..p }))
+                    .collect()
             }
         }
     }
@@ -131,7 +137,9 @@ fn axis_touches(profile: &Curve, origin: DVec3, axis: DVec3, tolerance: f64) -> 
         let (p, d) = (flat(*o - origin), flat(*direction));
         let t = -p.dot(d) / d.length_squared();
         let size = p.length() + direction.length();
-        let hit = t.is_finite() && d.length() > FLAT * direction.length() && radius(t) <= tolerance.max(CLOSED * size);
+        let hit = t.is_finite()
+            && d.length() > FLAT * direction.length()
+            && radius(t) <= tolerance.max(CLOSED * size);
         return if hit { vec![t] } else { Vec::new() };
     }
     let domain = profile.domain();
@@ -154,7 +162,8 @@ fn axis_touches(profile: &Curve, origin: DVec3, axis: DVec3, tolerance: f64) -> 
         if radii[i] > radii[before] || radii[i] > radii[after] {
             continue;
         }
-        let t = if radii[i] <= tolerance { samples[i] } else { lowest(&radius, samples[before], samples[after]) };
+        let t =
+            if radii[i] <= tolerance { samples[i] } else { lowest(&radius, samples[before], samples[after]) };
         let known = |f: &f64| (f - t).abs() <= 1e-6 * range.length();
         if radius(t) <= tolerance && !found.iter().any(known) {
             found.push(t);

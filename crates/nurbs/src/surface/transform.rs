@@ -87,7 +87,8 @@ impl Surface {
                 let moved = basis.transformed(by)?;
                 // A mirror that keeps the parameters turns the normal round.
                 let side = if mirrored && !moved.flip_u { -1.0 } else { 1.0 };
-                let surface = Surface::Offset { basis: Box::new(moved.surface), distance: distance * scale * side };
+                let surface =
+                    Surface::Offset { basis: Box::new(moved.surface), distance: distance * scale * side };
                 (surface, moved.flip_u)
             }
             Surface::Nurbs(_) => return None,
