@@ -39,10 +39,12 @@ pub fn segment(a: DVec3, b: DVec3) -> CompositeSegment {
 pub fn curves() -> Vec<(&'static str, Curve, Range)> {
     let f = frame();
     let arc = Curve::Circle { frame: f, radius: 2.0 };
+    let shift = arc.point(0.5) - nurbs_curve().point(0.1);
+    let joined = nurbs_curve().mapped(|p| p + shift);
     let composite = vec![
         segment(DVec3::ZERO, arc.point(2.0)),
         CompositeSegment { curve: arc.clone(), start: 2.0, end: 0.5 },
-        CompositeSegment { curve: Curve::Nurbs(nurbs_curve()), start: 0.1, end: 0.9 },
+        CompositeSegment { curve: Curve::Nurbs(joined), start: 0.1, end: 0.9 },
     ];
     let line = Curve::Line { origin: DVec3::new(1., 2., 3.), direction: DVec3::new(2., -1., 0.5) };
     let surface = Arc::new(Surface::Cylinder { frame: f, radius: 3.0 });
