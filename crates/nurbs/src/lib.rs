@@ -47,6 +47,8 @@ pub use curve2::{Curve2, Curve2Jet};
 pub use error::NurbsError;
 pub use facet::{FacetBound, facet_bound};
 pub use frame::{Frame, Frame2};
+pub use invert_curve::{CurveInversion, CurveInverter};
+pub use invert_surface::{Inversion, SurfaceInverter};
 pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_surface::NurbsSurface;
 pub use surface::{Pole, Surface, SurfaceJet, SurfaceKind, TransformedSurface};
