@@ -3,6 +3,7 @@
 mod breaks;
 mod extent;
 mod offset;
+mod on_surface;
 mod proof;
 mod transform;
 

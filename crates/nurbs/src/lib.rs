@@ -10,12 +10,10 @@
 pub use glam::{DAffine3, DVec2, DVec3, DVec4};
 
 mod basis;
+mod bernstein;
 mod bezier;
-mod tensor;
-mod knots;
 mod bezier_patch;
 mod blossom;
-mod bernstein;
 mod bounds;
 mod box3;
 mod compose;
@@ -31,9 +29,11 @@ mod frame;
 mod homogeneous;
 mod invert_curve;
 mod invert_surface;
+mod knots;
 mod nurbs_curve;
 mod nurbs_surface;
 mod surface;
+mod tensor;
 mod uv_box;
 mod vector;
 #[cfg(test)]

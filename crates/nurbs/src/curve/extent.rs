@@ -1,6 +1,6 @@
 //! Boxes around curves.
 
-use crate::{Box3, Curve, Range};
+use crate::{Box3, Curve, NurbsCurve3, Range};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -25,8 +25,9 @@ impl Curve {
             Curve::Hyperbola { frame: f, a, b } => {
                 stops.extend(interior(range, |k| Some((-(f.y * *b)[k] / (f.x * *a)[k]).atanh())));
             }
+            Curve::Nurbs(curve) => return nurbs_box(self, curve, range),
             Curve::Polyline(_) => stops.extend(self.all_breaks(range)),
-            Curve::Nurbs(_) | Curve::Composite(_) | Curve::Offset { .. } | Curve::OnSurface { .. } => {
+            Curve::Composite(_) | Curve::Offset { .. } | Curve::OnSurface { .. } => {
                 return bounded_box(self, range);
             }
         }
@@ -60,7 +61,32 @@ fn interior(range: Range, at: impl Fn(usize) -> Option<f64>) -> Vec<f64> {
     (0..3).filter_map(at).filter(|t| t.is_finite() && range.contains(*t)).collect()
 }
 
-/// Samples, each widened by twice the sag of its piece.
+/// The hull of the control points of short pieces; widened sampling where weights are not positive.
+fn nurbs_box(whole: &Curve, curve: &NurbsCurve3, range: Range) -> Box3 {
+    if curve.weights().is_some_and(|w| w.iter().any(|w| *w <= 0.0)) {
+        return bounded_box(whole, range);
+    }
+    let mut stops = vec![range.start];
+    stops.extend(whole.all_breaks(range));
+    stops.push(range.end);
+    let mut found = Box3::EMPTY.including(whole.point(range.start)).including(whole.point(range.end));
+    for pair in stops.windows(2) {
+        let mid = whole.inside(0.5 * (pair[0] + pair[1]));
+        let shift = mid - 0.5 * (pair[0] + pair[1]);
+        for i in 0..PIECES {
+            let at = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / PIECES as f64 + shift;
+            let own = Range::new(curve.domain().clamp(at(i)), curve.domain().clamp(at(i + 1)));
+            if own.length() > 0.0 {
+                if let Ok(piece) = curve.piece(own) {
+                    found = piece.points().iter().fold(found, |b, p| b.including(*p));
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Samples, each pair widened by the bound of the chord error between them where there is one.
 fn bounded_box(curve: &Curve, range: Range) -> Box3 {
     let mut stops = vec![range.start];
     stops.extend(curve.all_breaks(range));
@@ -69,9 +95,9 @@ fn bounded_box(curve: &Curve, range: Range) -> Box3 {
     for pair in stops.windows(2) {
         let at = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / PIECES as f64;
         for i in 0..PIECES {
-            let (a, b) = (curve.point(at(i)), curve.point(at(i + 1)));
-            let sag = curve.point(0.5 * (at(i) + at(i + 1))).distance((a + b) * 0.5);
-            found = found.union(Box3::from_points([a, b]).inflated(2.0 * sag));
+            let ends = Box3::from_points([curve.point(at(i)), curve.point(at(i + 1))]);
+            let error = curve.chord_error(at(i), at(i + 1));
+            found = found.union(if error.is_finite() { ends.inflated(error) } else { ends });
         }
     }
     found
