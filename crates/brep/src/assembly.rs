@@ -43,7 +43,8 @@ impl Model {
     /// Every placed part, depth first in the order of the tree.
     pub fn placements(&self) -> Vec<Placement> {
         let mut found = Vec::new();
-        let mut stack: Vec<(NodeId, DAffine3)> = self.roots.iter().rev().map(|&n| (n, DAffine3::IDENTITY)).collect();
+        let mut stack: Vec<(NodeId, DAffine3)> =
+            self.roots.iter().rev().map(|&n| (n, DAffine3::IDENTITY)).collect();
         while let Some((id, parent)) = stack.pop() {
             let node = &self.nodes[id.index()];
             let world = parent * node.transform;

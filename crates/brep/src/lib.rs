@@ -12,7 +12,7 @@ mod source;
 pub use assembly::{Model, Node, Placement};
 pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};
 pub use part::{
-    Body, BodyKind, Coedge, Color, Edge, Face, FaceGeometry, Loop, LooseItem, LooseKind, Part, Pcurve, Shell, TessellatedItem,
-    Vertex,
+    Body, BodyKind, Coedge, Color, Edge, Face, FaceGeometry, Loop, LooseItem, LooseKind, Part, Pcurve, Shell,
+    TessellatedItem, Vertex,
 };
 pub use source::{Source, Warning};

@@ -4,7 +4,7 @@
 //! Book*, chapter 2). Notation: `p` degree, `s` the span with `knots[s] <= t < knots[s+1]`; the functions that do not
 //! vanish on it are `s-p..=s`. Only non-empty spans are ever evaluated, so no denominator is zero.
 
-use crate::NurbsError;
+use crate::{NurbsError, Range};
 
 /// The largest degree accepted.
 pub(crate) const MAX_DEGREE: usize = 100;
@@ -22,10 +22,10 @@ pub(crate) fn check_knots(degree: usize, knots: &[f64], points: usize) -> Result
     if !knots[0].is_finite() {
         return Err(NurbsError::KnotOrder { index: 0, from: knots[0], to: knots[0] });
     }
-    if let Some(i) = (1..knots.len()).find(|&i| !(knots[i] >= knots[i - 1]) || !knots[i].is_finite()) {
+    if let Some(i) = (1..knots.len()).find(|&i| knots[i] < knots[i - 1] || !knots[i].is_finite()) {
         return Err(NurbsError::KnotOrder { index: i, from: knots[i - 1], to: knots[i] });
     }
-    if !(knots[points] > knots[degree]) || !(knots[points] - knots[degree]).is_finite() {
+    if knots[points] <= knots[degree] || !(knots[points] - knots[degree]).is_finite() {
         return Err(NurbsError::EmptyDomain);
     }
     Ok(())
@@ -54,6 +54,13 @@ pub(crate) fn find_span(degree: usize, knots: &[f64], t: f64) -> usize {
         return degree + knots[degree..last].partition_point(|&k| k < end) - 1;
     }
     degree + knots[degree + 1..last].partition_point(|&k| k <= t)
+}
+
+/// Indices of the non-empty spans whose inside meets `within`; none where that is empty.
+pub(crate) fn spans_within(degree: usize, knots: &[f64], within: Range) -> Vec<usize> {
+    (degree..knots.len() - degree - 1)
+        .filter(|&s| knots[s] < knots[s + 1] && knots[s] < within.end && knots[s + 1] > within.start)
+        .collect()
 }
 
 /// Distinct knots inside the closed domain, both ends included.
@@ -110,6 +117,27 @@ impl<const R: usize> Basis<R> {
             basis.heap = vec![0.0; R * width];
             let mut rows = basis.heap.chunks_exact_mut(width);
             fill::<R>(degree, window, t, std::array::from_fn(|_| rows.next().expect("R rows of this width")));
+        }
+        basis
+    }
+
+    /// The Bernstein polynomials of this degree at `t`, which is not clamped.
+    pub fn bernstein(degree: usize, t: f64) -> Self {
+        let width = degree + 1;
+        let mut basis = Self { first: 0, width, stack: [[0.0; STACK_WIDTH]; R], heap: Vec::new() };
+        if width <= STACK_WIDTH {
+            let window: [f64; 2 * STACK_WIDTH] = std::array::from_fn(|i| f64::from(i >= degree));
+            fill(degree, &window[..2 * degree], t, basis.stack.each_mut().map(|row| &mut row[..width]));
+        } else {
+            let window: Vec<f64> = (0..2 * degree).map(|i| f64::from(i >= degree)).collect();
+            basis.heap = vec![0.0; R * width];
+            let mut rows = basis.heap.chunks_exact_mut(width);
+            fill::<R>(
+                degree,
+                &window,
+                t,
+                std::array::from_fn(|_| rows.next().expect("R rows of this width")),
+            );
         }
         basis
     }

@@ -125,7 +125,10 @@ impl<'a> SurfaceBounds<'a> {
     /// Parameters inside the box at which the first derivative jumps: (in u, in v).
     pub fn creases(&self) -> (Vec<f64>, Vec<f64>) {
         let pick = |breaks: &[f64], jumps: &[f64]| {
-            (1..breaks.len().saturating_sub(1)).filter(|&i| jumps[i] > 0.0).map(|i| breaks[i]).collect::<Vec<_>>()
+            (1..breaks.len().saturating_sub(1))
+                .filter(|&i| jumps[i] > 0.0)
+                .map(|i| breaks[i])
+                .collect::<Vec<_>>()
         };
         match (&self.prepared, self.surface) {
             (Prepared::Profile(t), Surface::Extrusion { .. }) => (pick(&t.breaks, &t.jumps), Vec::new()),
@@ -163,7 +166,8 @@ impl<'a> SurfaceBounds<'a> {
                 for i in i0..i1 {
                     let u = Range::new(b.min.x.max(table.breaks_u[i]), b.max.x.min(table.breaks_u[i + 1]));
                     for j in j0..j1 {
-                        let v = Range::new(b.min.y.max(table.breaks_v[j]), b.max.y.min(table.breaks_v[j + 1]));
+                        let v =
+                            Range::new(b.min.y.max(table.breaks_v[j]), b.max.y.min(table.breaks_v[j + 1]));
                         self.push(UvBox::from_ranges(u, v), table.third[i * columns + j], out);
                     }
                 }
@@ -191,7 +195,9 @@ impl<'a> SurfaceBounds<'a> {
                 [ball(r), ball(t.abs()), ball(0.0), ball(0.0)]
             }
             Surface::Sphere { radius, .. } => [ball(*radius); 4],
-            Surface::Torus { major, minor, .. } => [ball(major + minor), ball(*minor), ball(*minor), ball(*minor)],
+            Surface::Torus { major, minor, .. } => {
+                [ball(major + minor), ball(*minor), ball(*minor), ball(*minor)]
+            }
             _ => [ball(0.0); 4],
         }
     }
@@ -241,7 +247,9 @@ impl Wrap {
         Self(match surface {
             Surface::Extrusion { .. } => [closed(period_u, domain.u()), None],
             Surface::Revolution { .. } => [None, closed(period_v, domain.v())],
-            Surface::Nurbs(_) | Surface::Offset { .. } => [closed(period_u, domain.u()), closed(period_v, domain.v())],
+            Surface::Nurbs(_) | Surface::Offset { .. } => {
+                [closed(period_u, domain.u()), closed(period_v, domain.v())]
+            }
             _ => [None, None],
         })
     }
@@ -367,6 +375,12 @@ impl CellTable {
                 jumps_v[j * parts] = jump.max(jumps_v[j * parts]);
             }
         }
-        Some(Self { breaks_u: subdivided(&spans_u, parts), breaks_v: subdivided(&spans_v, parts), third, jumps_u, jumps_v })
+        Some(Self {
+            breaks_u: subdivided(&spans_u, parts),
+            breaks_v: subdivided(&spans_v, parts),
+            third,
+            jumps_u,
+            jumps_v,
+        })
     }
 }

@@ -117,7 +117,11 @@ fn cone_bound(facet: &Facet, radii: [f64; 3], cosine: f64) -> FacetBound {
     let mut sorted = radii;
     sorted.sort_by(|a, b| b.total_cmp(a));
     let same_radius = sorted[0] - sorted[2] <= 1e-12 * scale;
-    let spread = if same_radius || turn == 0.0 { 1.0 } else { ((last - middle).sin() + (middle - first).sin()) / turn.sin() };
+    let spread = if same_radius || turn == 0.0 {
+        1.0
+    } else {
+        ((last - middle).sin() + (middle - first).sin()) / turn.sin()
+    };
     FacetBound { error: cosine * cone_chord(sorted[0], sorted[1], turn) * spread, edges }
 }
 
@@ -240,7 +244,15 @@ fn general_bound(bounds: &SurfaceBounds<'_>, facet: &Facet, pieces: &mut Vec<Pie
 
 /// Bounds the slope of S over the facet: f = n·S has a derivative along side ij of at most
 /// ½ max(|h_ij|, |h_jk − h_ik|) plus its deviation; two sides give the gradient.
-fn slope(normal: &Form, d: &[DVec2; 3], h: &[f64; 3], length: &[f64; 3], size: DVec2, kink: DVec2, area2: f64) -> f64 {
+fn slope(
+    normal: &Form,
+    d: &[DVec2; 3],
+    h: &[f64; 3],
+    length: &[f64; 3],
+    size: DVec2,
+    kink: DVec2,
+    area2: f64,
+) -> f64 {
     let along = |i: usize| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         let reach = (normal.reach[0] * size.x + normal.reach[1] * size.y) * d[i].x.abs()

@@ -49,6 +49,9 @@ impl<V: Vector> Mul<f64> for Homogeneous<V> {
     }
 }
 impl<V: Vector> Vector for Homogeneous<V> {
+    fn dot(self, other: Self) -> f64 {
+        self.v.dot(other.v) + self.w * other.w
+    }
     fn norm(self) -> f64 {
         self.v.norm().hypot(self.w)
     }

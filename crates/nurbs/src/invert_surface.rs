@@ -1,1 +1,162 @@
-//! (to be written)
+//! The parameters of a surface's point closest to a given point.
+
+mod elementary;
+mod general;
+mod swept;
+
+use crate::conic::{unwrapped, wrapped};
+use crate::{Surface, UvBox};
+use general::Grid;
+use glam::{DVec2, DVec3};
+use std::sync::OnceLock;
+use swept::{ExtrusionInverter, RevolutionInverter};
+
+/// The closest point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inversion {
+    pub uv: DVec2,
+    /// From the given point to the surface's point at `uv`, in model units.
+    pub distance: f64,
+}
+
+/// A surface prepared for many inversions.
+#[derive(Clone, Debug)]
+pub struct SurfaceInverter<'a> {
+    surface: &'a Surface,
+    /// Where closed directions are placed without a hint.
+    start: DVec2,
+    periods: [Option<f64>; 2],
+    method: Method<'a>,
+}
+
+#[derive(Clone, Debug)]
+enum Method<'a> {
+    Elementary,
+    Extrusion(ExtrusionInverter<'a>),
+    Revolution(RevolutionInverter<'a>),
+    /// Samples are taken when first needed.
+    Grid {
+        grid: OnceLock<Grid>,
+        uv: UvBox,
+    },
+    Offset {
+        basis: Box<SurfaceInverter<'a>>,
+        uv: UvBox,
+    },
+}
+
+impl Surface {
+    /// The parameters of the closest point; closed directions are unrolled to within half a period of `near`, or else
+    /// lie in the domain. On an axis or pole the angle is that of `near`, or zero.
+    /// For many points of one surface use a [`SurfaceInverter`].
+    pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> DVec2 {
+        SurfaceInverter::new(self, self.domain()).invert(p_xyz, near).uv
+    }
+}
+
+impl<'a> SurfaceInverter<'a> {
+    /// Prepares inversions. `uv` says where the caller is at work: free-form surfaces are sampled there, and closed
+    /// directions without a hint are placed in the turn that starts at its lower end. Closest points are found outside
+    /// it too as long as they are in the surface's domain.
+    pub fn new(surface: &'a Surface, uv: UvBox) -> Self {
+        let domain = surface.domain();
+        let periods = surface.periods();
+        let start = start_of(uv, domain);
+        let method = match surface {
+            Surface::Extrusion { profile, direction } => {
+                Method::Extrusion(ExtrusionInverter::new(profile, *direction, uv.u()))
+            }
+            Surface::Revolution { profile, axis_origin, axis } => {
+                Method::Revolution(RevolutionInverter::new(profile, *axis_origin, *axis, uv.v()))
+            }
+            Surface::Nurbs(_) => Method::Grid { grid: OnceLock::new(), uv: sampled_box(uv, domain, periods) },
+            Surface::Offset { basis, .. } => {
+                Method::Offset { basis: Box::new(Self::new(basis, uv)), uv: domain }
+            }
+            _ => Method::Elementary,
+        };
+        Self { surface, start, periods, method }
+    }
+
+    pub fn surface(&self) -> &'a Surface {
+        self.surface
+    }
+
+    /// The closest point. With `near`, a close one in its valley is preferred, and closed directions are unrolled to
+    /// within half a period of it.
+    pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> Inversion {
+        let uv = match &self.method {
+            Method::Elementary => elementary::invert(self.surface, p_xyz, near),
+            Method::Extrusion(inverter) => inverter.invert(p_xyz, near),
+            Method::Revolution(inverter) => inverter.invert(p_xyz, near),
+            Method::Grid { grid, uv } => {
+                let near = near.map(|n| self.wrapped_into(n, *uv));
+                general::invert(self.surface, self.periods, *uv, grid, p_xyz, near)
+            }
+            Method::Offset { basis, uv } => {
+                let first = basis.invert(p_xyz, near).uv;
+                let mut found = general::descend(self.surface, self.periods, *uv, p_xyz, first);
+                if let Some(near) = near {
+                    let other = general::descend(self.surface, self.periods, *uv, p_xyz, near);
+                    if other.distance < found.distance * (1.0 - 1e-9) {
+                        found = other;
+                    }
+                }
+                found.uv
+            }
+        };
+        let uv = self.placed(uv, near);
+        Inversion { uv, distance: self.surface.point(uv).distance(p_xyz) }
+    }
+
+    fn wrapped_into(&self, p_uv: DVec2, uv: UvBox) -> DVec2 {
+        let mut inside = p_uv;
+        for axis in 0..2 {
+            if let Some(period) = self.periods[axis] {
+                inside[axis] = wrapped(p_uv[axis], uv.min[axis], uv.min[axis] + period);
+            }
+        }
+        inside
+    }
+
+    /// Closed directions in the turn that is asked for.
+    fn placed(&self, p_uv: DVec2, near: Option<DVec2>) -> DVec2 {
+        let mut placed = p_uv;
+        for axis in 0..2 {
+            if let Some(period) = self.periods[axis] {
+                placed[axis] = match near {
+                    Some(near) => unwrapped(p_uv[axis], near[axis], period),
+                    None => wrapped(p_uv[axis], self.start[axis], self.start[axis] + period),
+                };
+            }
+        }
+        placed
+    }
+}
+
+/// The lower corner of `uv`, of the domain where that is infinite, or zero.
+fn start_of(uv: UvBox, domain: UvBox) -> DVec2 {
+    let pick = |axis: usize| {
+        [uv.min[axis], domain.min[axis]].into_iter().find(|start| start.is_finite()).unwrap_or(0.0)
+    };
+    DVec2::new(pick(0), pick(1))
+}
+
+/// The part of the domain to sample: `uv` inside it, all of it where nothing would be left.
+fn sampled_box(uv: UvBox, domain: UvBox, periods: [Option<f64>; 2]) -> UvBox {
+    let mut found = domain;
+    for axis in 0..2 {
+        if periods[axis].is_some() {
+            continue;
+        }
+        let (low, high) = (uv.min[axis].max(domain.min[axis]), uv.max[axis].min(domain.max[axis]));
+        if low < high {
+            found.min[axis] = low;
+            found.max[axis] = high;
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests;

@@ -10,12 +10,18 @@
 pub use glam::{DAffine3, DVec2, DVec3, DVec4};
 
 mod basis;
+mod bernstein;
 mod bezier;
+mod bezier_patch;
+mod blossom;
 mod bounds;
+mod box3;
 mod compose;
+mod conic;
 mod convert;
 mod curve;
 mod curve2;
+mod curve_bounds;
 mod degree;
 mod error;
 mod facet;
@@ -23,21 +29,28 @@ mod frame;
 mod homogeneous;
 mod invert_curve;
 mod invert_surface;
+mod knots;
 mod nurbs_curve;
 mod nurbs_surface;
 mod surface;
+mod tensor;
 mod uv_box;
 mod vector;
+#[cfg(test)]
+mod zoo;
 
 pub use bezier::{BezierCurve, BezierPatch};
 pub use bounds::{Ball, Piece, SurfaceBounds, Wrap};
+pub use box3::Box3;
 pub use curve::{CompositeSegment, Curve, CurveJet};
 pub use curve2::{Curve2, Curve2Jet};
 pub use error::NurbsError;
 pub use facet::{Facet, FacetBound, facet_bound};
 pub use frame::{Frame, Frame2};
+pub use invert_curve::{CurveInversion, CurveInverter};
+pub use invert_surface::{Inversion, SurfaceInverter};
 pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_surface::NurbsSurface;
-pub use surface::{Surface, SurfaceJet, SurfaceKind};
+pub use surface::{Pole, Surface, SurfaceJet, SurfaceKind, TransformedSurface};
 pub use uv_box::{Range, UvBox};
 pub use vector::Vector;

@@ -1,8 +1,7 @@
 //! Non-uniform rational B-spline surfaces.
 
 use crate::basis::{self, Basis};
-use crate::homogeneous::Homogeneous;
-use crate::{NurbsError, Range, SurfaceJet, UvBox, Vector};
+use crate::{NurbsError, Range, SurfaceJet, UvBox, Vector, tensor};
 use glam::{DAffine3, DVec2, DVec3};
 
 /// A tensor-product B-spline surface of any degree from 1 to 100, rational where it has weights.
@@ -93,53 +92,11 @@ impl NurbsSurface {
         SurfaceJet { p, du, dv, duu, duv, dvv }
     }
 
-    /// Derivatives `[by u][by v]` of total order below `R`; the others are left zero.
-    ///
-    /// Sums are taken relative to the first control point concerned: derivatives then keep their digits far from the
-    /// origin.
     #[inline]
     fn derivatives<const R: usize>(&self, uv: DVec2) -> [[DVec3; R]; R] {
         let bu = Basis::<R>::new(self.degree_u, &self.knots_u, uv.x);
         let bv = Basis::<R>::new(self.degree_v, &self.knots_v, uv.y);
-        let start = bu.first * self.count_v + bv.first;
-        let origin = self.points[start];
-        let mut jet = match &self.weights {
-            None => self.sum(&bu, &bv, |k| self.points[k] - origin),
-            Some(weights) => {
-                project(self.sum(&bu, &bv, |k| Homogeneous::new(self.points[k] - origin, weights[k])))
-            }
-        };
-        jet[0][0] += origin;
-        jet
-    }
-
-    /// Sums `point(index)` times the products of the two bases.
-    #[inline(always)]
-    fn sum<T: Vector, const R: usize>(
-        &self,
-        bu: &Basis<R>,
-        bv: &Basis<R>,
-        point: impl Fn(usize) -> T,
-    ) -> [[T; R]; R] {
-        let rows_u: [&[f64]; R] = std::array::from_fn(|k| bu.row(k));
-        let rows_v: [&[f64]; R] = std::array::from_fn(|k| bv.row(k));
-        let mut jet = [[T::default(); R]; R];
-        for i in 0..=self.degree_u {
-            let start = (bu.first + i) * self.count_v + bv.first;
-            let mut row = [T::default(); R];
-            for j in 0..=self.degree_v {
-                let p = point(start + j);
-                for k in 0..R {
-                    row[k] += p * rows_v[k][j];
-                }
-            }
-            for a in 0..R {
-                for b in 0..R - a {
-                    jet[a][b] += row[b] * rows_u[a][i];
-                }
-            }
-        }
-        jet
+        tensor::derivatives(&bu, &bv, self.count_v, &self.points, self.weights.as_deref())
     }
 
     /// The surface moved by an affine map.
@@ -231,58 +188,5 @@ impl NurbsSurface {
     /// The largest distance of a control point from the first.
     fn net_size(&self) -> f64 {
         self.points.iter().map(|p| p.distance(self.points[0])).fold(0.0, f64::max)
-    }
-}
-
-/// Turns derivatives of a homogeneous surface into those of its projection (total order below `R`, at most 3).
-#[inline]
-fn project<const R: usize>(h: [[Homogeneous<DVec3>; R]; R]) -> [[DVec3; R]; R] {
-    const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
-    let inverse = 1.0 / h[0][0].w;
-    let mut jet = [[DVec3::ZERO; R]; R];
-    for a in 0..R {
-        for b in 0..R - a {
-            let mut sum = h[a][b].v;
-            for i in 0..=a {
-                for j in 0..=b {
-                    if i + j > 0 {
-                        sum -= jet[a - i][b - j] * (BINOMIAL[a][i] * BINOMIAL[b][j] * h[i][j].w);
-                    }
-                }
-            }
-            jet[a][b] = sum * inverse;
-        }
-    }
-    jet
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    #[ignore = "a measurement"]
-    fn speed() {
-        let knots = vec![0.0, 0.0, 0.0, 0.0, 0.3, 0.5, 1.0, 1.0, 1.0, 1.0];
-        let points: Vec<DVec3> =
-            (0..36).map(|k| DVec3::new((k / 6) as f64, (k % 6) as f64, (k as f64).sin())).collect();
-        for weights in [None, Some((0..36).map(|k| 1.0 + 0.1 * f64::from(k % 5)).collect::<Vec<_>>())] {
-            let s = NurbsSurface::new([3, 3], knots.clone(), knots.clone(), points.clone(), weights).unwrap();
-            let n = 1_000_000;
-            let start = std::time::Instant::now();
-            let mut sum = DVec3::ZERO;
-            for k in 0..n {
-                let t = f64::from(k) / f64::from(n);
-                let jet = s.jet(std::hint::black_box(DVec2::new(t, 1.0 - t)));
-                sum += jet.p + jet.duv + jet.duu + jet.dvv;
-            }
-            eprintln!("jet {:?}/call {sum}", start.elapsed() / n as u32);
-            let start = std::time::Instant::now();
-            for k in 0..n {
-                let t = f64::from(k) / f64::from(n);
-                sum += s.point(std::hint::black_box(DVec2::new(t, 1.0 - t)));
-            }
-            eprintln!("point {:?}/call {sum}", start.elapsed() / n as u32);
-        }
     }
 }

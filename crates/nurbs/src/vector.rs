@@ -17,6 +17,8 @@ pub trait Vector:
     + Sub<Output = Self>
     + Mul<f64, Output = Self>
 {
+    /// Inner product.
+    fn dot(self, other: Self) -> f64;
     /// Euclidean length.
     fn norm(self) -> f64;
     /// True where every component is finite.
@@ -24,6 +26,9 @@ pub trait Vector:
 }
 
 impl Vector for f64 {
+    fn dot(self, other: Self) -> f64 {
+        self * other
+    }
     fn norm(self) -> f64 {
         self.abs()
     }
@@ -35,6 +40,7 @@ impl Vector for f64 {
 macro_rules! vector {
     ($($t:ty),*) => {$(
         impl Vector for $t {
+            fn dot(self, other: Self) -> f64 { <$t>::dot(self, other) }
             fn norm(self) -> f64 { self.length() }
             fn all_finite(self) -> bool { self.is_finite() }
         }

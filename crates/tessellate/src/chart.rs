@@ -24,7 +24,10 @@ pub(crate) enum Key {
 /// What the polygon runs along from one chart point to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Segment {
-    Edge { edge: u32, chord: u32 },
+    Edge {
+        edge: u32,
+        chord: u32,
+    },
     /// A cut through the surface that only this face knows; both sides have the same vertices.
     Seam,
     /// A line of parameter space that is one point.
@@ -51,10 +54,10 @@ pub(crate) struct OpenLoop {
 }
 
 /// What the stages of one face share.
-pub(crate) struct FaceContext<'a> {
+pub(crate) struct FaceContext<'a, 's> {
     pub part: &'a Part,
     pub face: &'a Face,
-    pub surface: &'a FaceSurface<'a>,
+    pub surface: &'a FaceSurface<'s>,
     pub edges: &'a [EdgeSamples],
     /// Points nearer together than this are the same point.
     pub resolution: f64,
@@ -69,7 +72,7 @@ struct Run {
     poles: [bool; 2],
 }
 
-impl FaceContext<'_> {
+impl FaceContext<'_, '_> {
     /// All loops of the face with the interior on their left in the chart, and the vertices of vertex loops.
     ///
     /// # Errors
@@ -81,7 +84,8 @@ impl FaceContext<'_> {
             match a_loop {
                 Loop::Vertex(v) => lone.push(v.0),
                 Loop::Polygon { vertices, outer } => {
-                    let xyz: Vec<DVec3> = vertices.iter().map(|v| self.part.vertices[v.index()].point).collect();
+                    let xyz: Vec<DVec3> =
+                        vertices.iter().map(|v| self.part.vertices[v.index()].point).collect();
                     let uv = self.inverted(&xyz, None);
                     let points = uv.iter().zip(vertices).map(|(&uv, v)| ChartPoint {
                         uv,
@@ -176,7 +180,12 @@ impl FaceContext<'_> {
         if self.gap(&projected, samples) < 0.5 * gap { projected } else { uv }
     }
 
-    fn pcurve_uv(&self, coedge: &Coedge, samples: &EdgeSamples, near: Option<DVec2>) -> Option<(Vec<DVec2>, f64)> {
+    fn pcurve_uv(
+        &self,
+        coedge: &Coedge,
+        samples: &EdgeSamples,
+        near: Option<DVec2>,
+    ) -> Option<(Vec<DVec2>, f64)> {
         let first = samples.t[0];
         let length = samples.t[samples.t.len() - 1] - first;
         let sampled = |p: &Pcurve| -> Vec<DVec2> {
@@ -190,9 +199,12 @@ impl FaceContext<'_> {
                 continue;
             }
             let gap = self.gap(&uv, samples);
-            let begins = |uv: &[DVec2]| near.map_or(0.0, |n| uv[if coedge.forward { 0 } else { uv.len() - 1 }].distance(n));
+            let begins = |uv: &[DVec2]| {
+                near.map_or(0.0, |n| uv[if coedge.forward { 0 } else { uv.len() - 1 }].distance(n))
+            };
             let better = best.as_ref().is_none_or(|(old, old_gap)| {
-                let similar = gap <= 2.0 * old_gap + self.resolution && *old_gap <= 2.0 * gap + self.resolution;
+                let similar =
+                    gap <= 2.0 * old_gap + self.resolution && *old_gap <= 2.0 * gap + self.resolution;
                 if similar { begins(&uv) < begins(old) } else { gap < *old_gap }
             });
             if better {
@@ -271,7 +283,11 @@ impl FaceContext<'_> {
         let mut open = OpenLoop::default();
         for run in &runs {
             let n = run.uv.len() - 1;
-            open.points.extend((0..n).map(|i| ChartPoint { uv: run.uv[i], key: run.keys[i], segment: run.chords[i] }));
+            open.points.extend((0..n).map(|i| ChartPoint {
+                uv: run.uv[i],
+                key: run.keys[i],
+                segment: run.chords[i],
+            }));
             if run.poles[1] {
                 open.points.push(ChartPoint { uv: run.uv[n], key: run.keys[n], segment: Segment::Pole });
             }
@@ -298,7 +314,13 @@ impl FaceContext<'_> {
         if step < tiny || step > period - tiny {
             step = 0.0;
         }
-        let step = if down { step - period } else if step == 0.0 { period } else { step };
+        let step = if down {
+            step - period
+        } else if step == 0.0 {
+            period
+        } else {
+            step
+        };
         let mut shift = DVec2::ZERO;
         shift[along] = end[along] + step - start[along];
         shift

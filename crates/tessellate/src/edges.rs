@@ -23,8 +23,8 @@ pub(crate) struct EdgeSamples {
 }
 
 /// A face that uses the edge.
-pub(crate) struct EdgeUse<'a> {
-    pub surface: &'a FaceSurface<'a>,
+pub(crate) struct EdgeUse<'a, 's> {
+    pub surface: &'a FaceSurface<'s>,
     pub pcurve: Option<&'a Pcurve>,
     /// The diagonal of the box of the face's vertices: how far the face may reach across the edge.
     pub reach: f64,
@@ -42,7 +42,7 @@ const CORNER: f64 = 1e-3;
 
 impl EdgeSamples {
     /// Samples an edge with at least `least` chords.
-    pub fn new(part: &Part, edge: &Edge, uses: &[EdgeUse<'_>], limits: &Limits, least: usize) -> Self {
+    pub fn new(part: &Part, edge: &Edge, uses: &[EdgeUse<'_, '_>], limits: &Limits, least: usize) -> Self {
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
             return Self { t: vec![edge.range.start], points: vec![ends[0]], sag: Vec::new(), fewest: 0.0 };
@@ -70,7 +70,7 @@ impl EdgeSamples {
     }
 
     /// Appends the chords of a piece without corners.
-    fn add_smooth(&mut self, curve: &Curve, range: Range, uses: &[EdgeUse<'_>], limits: &Limits) {
+    fn add_smooth(&mut self, curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>], limits: &Limits) {
         let probes = Probes::new(curve, range, uses, limits);
         self.fewest += probes.curvature_total.ceil().max(1.0);
         let mut count = (probes.total() - 1e-9).ceil().max(1.0) as usize;
@@ -157,7 +157,7 @@ struct Probes {
 }
 
 impl Probes {
-    fn new(curve: &Curve, range: Range, uses: &[EdgeUse<'_>], limits: &Limits) -> Self {
+    fn new(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>], limits: &Limits) -> Self {
         let mut breaks = vec![range.start];
         breaks.extend(curve.all_breaks(range));
         breaks.push(range.end);
@@ -176,8 +176,11 @@ impl Probes {
                 let t = pair[0] + (k as f64 + 0.5) * width;
                 let jet = curve.jet(t);
                 let own = own_rate(curve, &jet, limits);
-                let by_faces =
-                    uses.iter().zip(&mut near).map(|(u, near)| u.rate(&jet, t, range, near, limits)).fold(0.0, f64::max);
+                let by_faces = uses
+                    .iter()
+                    .zip(&mut near)
+                    .map(|(u, near)| u.rate(&jet, t, range, near, limits))
+                    .fold(0.0, f64::max);
                 probes.curvature_total += own * width;
                 let last = probes.sum[probes.sum.len() - 1];
                 probes.t.push(pair[0] + (k + 1) as f64 * width);
@@ -227,7 +230,7 @@ fn own_rate(curve: &Curve, jet: &CurveJet, limits: &Limits) -> f64 {
     if speed > 0.0 { (jet.d1.cross(jet.d2).length() / (8.0 * limits.tolerance * speed)).sqrt() } else { 0.0 }
 }
 
-impl EdgeUse<'_> {
+impl EdgeUse<'_, '_> {
     /// Chords per unit of parameter that the face asks for.
     fn rate(&self, jet: &CurveJet, t: f64, range: Range, near: &mut Option<DVec2>, limits: &Limits) -> f64 {
         if matches!(self.surface.surface, chordal_nurbs::Surface::Plane { .. }) {
@@ -249,7 +252,8 @@ impl EdgeUse<'_> {
         let d = DVec2::new((a * g - b * f) / det, (b * e - a * f) / det);
         let rate = sizing.metric.length(d);
         // Across the edge the face curves, too, and far enough for a second row.
-        let across = sizing.metric.determinant().max(0.0).sqrt() / sizing.area.max(1e-300) * jet.d1.length() / rate.max(1e-300);
+        let across = sizing.metric.determinant().max(0.0).sqrt() / sizing.area.max(1e-300) * jet.d1.length()
+            / rate.max(1e-300);
         let doubly = sizing.gauss > 0.0 && across * self.reach > 0.7;
         if doubly { rate / DOUBLY_CURVED_CHORD } else { rate }
     }

@@ -24,7 +24,6 @@ pub(crate) struct FaceResult {
     pub bound: &'static str,
     /// c·∫√|K| dA / ε, and the strips of a singly curved face.
     pub curvature_bound: f64,
-    pub loops: usize,
 }
 
 /// What became of a face in one round.
@@ -40,12 +39,19 @@ pub(crate) enum Outcome {
 enum Shape {
     Flat,
     /// Curved in one parameter only, straight in the other: the boundary suffices.
-    Singly { axis: usize },
+    Singly {
+        axis: usize,
+    },
     Doubly,
 }
 
 /// Meshes one face with the edges as they are.
-pub(crate) fn mesh_face(context: &FaceContext<'_>, limits: &Limits, options: &Options, cancel: &Cancel) -> Outcome {
+pub(crate) fn mesh_face(
+    context: &FaceContext<'_, '_>,
+    limits: &Limits,
+    options: &Options,
+    cancel: &Cancel,
+) -> Outcome {
     let mut seam_chord = SEAM_CHORD;
     for _ in 0..SEAM_TRIES {
         match FaceWork::run(context, limits, options, cancel, seam_chord) {
@@ -60,8 +66,8 @@ pub(crate) fn mesh_face(context: &FaceContext<'_>, limits: &Limits, options: &Op
 /// A seam that proves too coarse is cut finer this often.
 const SEAM_TRIES: usize = 8;
 
-pub(crate) struct FaceWork<'a> {
-    pub context: &'a FaceContext<'a>,
+pub(crate) struct FaceWork<'a, 's> {
+    pub context: &'a FaceContext<'a, 's>,
     pub limits: &'a Limits,
     pub chart: Chart,
     pub mesh: Triangulation,
@@ -74,10 +80,10 @@ pub(crate) struct FaceWork<'a> {
     shape: Shape,
 }
 
-impl<'a> FaceWork<'a> {
+impl<'a, 's> FaceWork<'a, 's> {
     /// `None` where the seam must be cut finer.
     fn run(
-        context: &'a FaceContext<'a>,
+        context: &'a FaceContext<'a, 's>,
         limits: &'a Limits,
         options: &Options,
         cancel: &Cancel,
@@ -115,7 +121,9 @@ impl<'a> FaceWork<'a> {
         match verdict {
             Verdict::Finer(chords) => Ok(Some(Outcome::Finer(chords))),
             Verdict::FinerSeam => Ok(None),
-            Verdict::Proven { error, bound } => Ok(Some(Outcome::Done(Box::new(work.finish(error, bound, options))))),
+            Verdict::Proven { error, bound } => {
+                Ok(Some(Outcome::Done(Box::new(work.finish(error, bound, options)))))
+            }
         }
     }
 
@@ -126,7 +134,8 @@ impl<'a> FaceWork<'a> {
             Some(sizing) => sizing.metric,
             None => self.metric_beside_pole(p_uv),
         };
-        let first = Metric { uu: jet.du.length_squared(), uv: jet.du.dot(jet.dv), vv: jet.dv.length_squared() };
+        let first =
+            Metric { uu: jet.du.length_squared(), uv: jet.du.dot(jet.dv), vv: jet.dv.length_squared() };
         self.metrics.push(metric.plus(first, self.floor));
         self.xyz.push(jet.p);
         self.normals.push(self.context.surface.normal(p_uv));
@@ -254,7 +263,12 @@ impl<'a> FaceWork<'a> {
             let [a, b, c] = t.map(|v| keys[v as usize]);
             a != b && b != c && c != a
         };
-        let triangles = self.mesh.triangles.iter().filter(keep).map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
+        let triangles = self
+            .mesh
+            .triangles
+            .iter()
+            .filter(keep)
+            .map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
         let triangles: Vec<[u32; 3]> = triangles.collect();
         let mut proven_error = error;
         for point in &self.chart.points {
@@ -262,7 +276,8 @@ impl<'a> FaceWork<'a> {
                 proven_error = proven_error.max(self.context.edges[edge as usize].sag[chord as usize]);
             }
         }
-        let proven_error = if options.bound == Bound::Proven && error.is_finite() { proven_error } else { f64::NAN };
+        let proven_error =
+            if options.bound == Bound::Proven && error.is_finite() { proven_error } else { f64::NAN };
         let gap = self.gap();
         let curvature_bound = self.curvature_bound();
         let sign = if reversed { -1.0 } else { 1.0 };
@@ -276,7 +291,6 @@ impl<'a> FaceWork<'a> {
             gap,
             bound,
             curvature_bound,
-            loops: self.chart.loops.len(),
         }
     }
 
@@ -308,7 +322,11 @@ impl<'a> FaceWork<'a> {
                 let bounds = UvBox::from_points(self.mesh.points.iter().copied());
                 let mut d = DVec2::ZERO;
                 d[axis] = bounds.size()[axis] / 16.0;
-                let start = { let mut s = bounds.center(); s[axis] = bounds.min[axis]; s };
+                let start = {
+                    let mut s = bounds.center();
+                    s[axis] = bounds.min[axis];
+                    s
+                };
                 let strips: f64 = (0..16)
                     .map(|k| {
                         let jet = self.context.surface.jet(start + d * (f64::from(k) + 0.5));
@@ -336,20 +354,22 @@ impl<'a> FaceWork<'a> {
 }
 
 /// How a face of this surface is filled.
-fn shape(context: &FaceContext<'_>, limits: &Limits, uv_box: UvBox) -> Shape {
+fn shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) -> Shape {
     if limits.length.is_finite() {
         return Shape::Doubly;
     }
     match context.surface.surface {
         Surface::Plane { .. } => Shape::Flat,
-        Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Extrusion { .. } => Shape::Singly { axis: 0 },
+        Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Extrusion { .. } => {
+            Shape::Singly { axis: 0 }
+        }
         Surface::Sphere { .. } | Surface::Torus { .. } => Shape::Doubly,
         _ => sampled_shape(context, limits, uv_box),
     }
 }
 
 /// A free surface is singly curved where its metric across one parameter stays far below one chord everywhere.
-fn sampled_shape(context: &FaceContext<'_>, limits: &Limits, uv_box: UvBox) -> Shape {
+fn sampled_shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) -> Shape {
     const N: usize = 6;
     let mut extent = [0.0f64; 2];
     let mut twist = 0.0f64;

@@ -34,13 +34,15 @@ struct Spacing {
 impl Spacing {
     /// For rows along `axis`.
     fn new(sizing: &Sizing, axis: usize, limits: &Limits) -> Self {
-        let pick = |m: &crate::metric::Metric| if axis == 0 { (m.uu, m.uv, m.vv) } else { (m.vv, m.uv, m.uu) };
+        let pick =
+            |m: &crate::metric::Metric| if axis == 0 { (m.uu, m.uv, m.vv) } else { (m.vv, m.uv, m.uu) };
         let (along, mixed, across) = pick(&sizing.metric);
         let (q_along, q_mixed, q_across) = pick(&sizing.signed);
         let tiny = 1e-300;
         // What any edge may be by angle and length, and by the absolute curvature, with a little left for diagonals.
         let reduced = (across - mixed * mixed / along.max(tiny)).max(0.0);
-        let by_metric = |base: f64, height: f64| (base / along.max(tiny).sqrt(), height / reduced.max(tiny).sqrt());
+        let by_metric =
+            |base: f64, height: f64| (base / along.max(tiny).sqrt(), height / reduced.max(tiny).sqrt());
         let positive = sizing.gauss > 0.0;
         let bent_by_angle = limits.angle.is_finite() || limits.length.is_finite();
         if positive {
@@ -65,8 +67,8 @@ pub(crate) struct Rows {
 }
 
 /// A face seen with rows along the first coordinate.
-struct Placer<'a> {
-    surface: &'a FaceSurface<'a>,
+struct Placer<'a, 's> {
+    surface: &'a FaceSurface<'s>,
     limits: &'a Limits,
     axis: usize,
     /// Sides of the polygons in (along, across).
@@ -84,8 +86,10 @@ impl Rows {
     pub fn new(surface: &FaceSurface<'_>, chart: &Chart, limits: &Limits) -> Self {
         let placers = [0, 1].map(|axis| Placer::new(surface, chart, limits, axis));
         let plans: Vec<_> = placers.iter().map(|p| (p, p.plan())).collect();
-        let enough = plans.iter().all(|(_, plan)| plan.strips <= 1.0 + 1e-6) || plans.iter().any(|(_, p)| p.strips == 0.0);
-        let Some((placer, plan)) = plans.into_iter().min_by(|a, b| a.1.unevenness.total_cmp(&b.1.unevenness)) else {
+        let enough = plans.iter().all(|(_, plan)| plan.strips <= 1.0 + 1e-6)
+            || plans.iter().any(|(_, p)| p.strips == 0.0);
+        let Some((placer, plan)) = plans.into_iter().min_by(|a, b| a.1.unevenness.total_cmp(&b.1.unevenness))
+        else {
             return Self { rows: Vec::new() };
         };
         if enough {
@@ -99,7 +103,8 @@ impl Rows {
         let mut rounds: Vec<Vec<DVec2>> = vec![Vec::new(); 12];
         let mut k = 0u32;
         for (r, row) in self.rows.iter().enumerate() {
-            let round_of = |k: u32| ((k.wrapping_mul(2_654_435_761) >> 7 | 1 << 11).trailing_zeros()) as usize;
+            let round_of =
+                |k: u32| ((k.wrapping_mul(2_654_435_761) >> 7 | 1 << 11).trailing_zeros()) as usize;
             let mut place = |p: &DVec2| {
                 rounds[round_of(k)].push(*p);
                 k = k.wrapping_add(1);
@@ -121,8 +126,8 @@ struct Plan {
     shear: f64,
 }
 
-impl<'a> Placer<'a> {
-    fn new(surface: &'a FaceSurface<'a>, chart: &Chart, limits: &'a Limits, axis: usize) -> Self {
+impl<'a, 's> Placer<'a, 's> {
+    fn new(surface: &'a FaceSurface<'s>, chart: &Chart, limits: &'a Limits, axis: usize) -> Self {
         let mut sides = Vec::with_capacity(chart.points.len());
         for &(start, end) in &chart.loops {
             for i in start..end {
@@ -228,7 +233,11 @@ impl<'a> Placer<'a> {
             let spacing = self.spacing(DVec2::new(from + (i as f64 + 0.5) * width, across));
             let step = spacing.map_or(0.0, |s| {
                 let h = 0.75 * tightness;
-                let stretch = if s.positive { (2.0 * (h - h * h).max(0.0).sqrt() / 0.866).clamp(1.0, 1.0 / 0.866) } else { 1.0 };
+                let stretch = if s.positive {
+                    (2.0 * (h - h * h).max(0.0).sqrt() / 0.866).clamp(1.0, 1.0 / 0.866)
+                } else {
+                    1.0
+                };
                 width / (s.base * stretch * SAFETY)
             });
             sum[i + 1] = sum[i] + step;

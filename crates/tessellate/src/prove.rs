@@ -11,7 +11,10 @@ use std::time::Instant;
 
 /// The result of refining a face.
 pub(crate) enum Verdict {
-    Proven { error: f64, bound: &'static str },
+    Proven {
+        error: f64,
+        bound: &'static str,
+    },
     Finer(Vec<(u32, u32)>),
     /// A seam, which only this face knows, is too coarse.
     FinerSeam,
@@ -53,7 +56,7 @@ impl<'a> Prover<'a> {
     ///
     /// # Errors
     /// A sentence, where the face is given up.
-    pub fn refine(&mut self, work: &mut FaceWork<'_>) -> Result<Verdict, String> {
+    pub fn refine(&mut self, work: &mut FaceWork<'_, '_>) -> Result<Verdict, String> {
         if matches!(self.bounds.surface(), Surface::Plane { .. }) && self.limits.length.is_infinite() {
             return Ok(Verdict::Proven { error: 0.0, bound: "plane" });
         }
@@ -116,7 +119,7 @@ impl<'a> Prover<'a> {
         Ok(Verdict::Proven { error: if self.sampled { f64::NAN } else { error }, bound })
     }
 
-    fn check_budget(&self, work: &FaceWork<'_>) -> Result<(), String> {
+    fn check_budget(&self, work: &FaceWork<'_, '_>) -> Result<(), String> {
         if self.cancel.is_cancelled() {
             return Err("cancelled".into());
         }
@@ -126,7 +129,7 @@ impl<'a> Prover<'a> {
         Ok(())
     }
 
-    fn facet(work: &FaceWork<'_>, t: u32) -> Facet {
+    fn facet(work: &FaceWork<'_, '_>, t: u32) -> Facet {
         let corners = work.mesh.triangles[t as usize];
         Facet {
             uv: corners.map(|v| work.mesh.points[v as usize]),
@@ -135,17 +138,21 @@ impl<'a> Prover<'a> {
         }
     }
 
-    fn bound(&mut self, work: &FaceWork<'_>, facet: &Facet) -> FacetBound {
-        if self.sampled { sampled_bound(work, facet) } else { facet_bound(self.bounds, facet, &mut self.scratch) }
+    fn bound(&mut self, work: &FaceWork<'_, '_>, facet: &Facet) -> FacetBound {
+        if self.sampled {
+            sampled_bound(work, facet)
+        } else {
+            facet_bound(self.bounds, facet, &mut self.scratch)
+        }
     }
 
     /// A triangle whose corners are not three vertices is not written.
-    fn collapsed(work: &FaceWork<'_>, t: u32) -> bool {
+    fn collapsed(work: &FaceWork<'_, '_>, t: u32) -> bool {
         let [a, b, c] = work.mesh.triangles[t as usize].map(|v| work.key(v));
         a == b || b == c || c == a
     }
 
-    fn judge(&mut self, work: &FaceWork<'_>, t: u32) -> (f64, Fault) {
+    fn judge(&mut self, work: &FaceWork<'_, '_>, t: u32) -> (f64, Fault) {
         if Self::collapsed(work, t) {
             return (0.0, Fault::None);
         }
@@ -160,7 +167,8 @@ impl<'a> Prover<'a> {
         let corners = work.mesh.triangles[t as usize];
         for i in 0..3 {
             let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.normals[v as usize]);
-            let length = work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);
+            let length =
+                work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);
             if turns_too_far(n, m, self.limits.angle) || length > self.limits.length * (1.0 + 1e-9) {
                 let fault = if facet.boundary[i] { Fault::Edge(i) } else { Fault::Inside(Some(i)) };
                 return (bound.error, fault);
@@ -169,13 +177,13 @@ impl<'a> Prover<'a> {
         (bound.error, Fault::None)
     }
 
-    fn boundary_segment(&self, work: &FaceWork<'_>, t: u32, i: usize) -> Option<Segment> {
+    fn boundary_segment(&self, work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<Segment> {
         let corners = work.mesh.triangles[t as usize];
         work.segment(corners[(i + 1) % 3], corners[(i + 2) % 3])
     }
 
     /// Flips an edge or inserts a point; false where neither is possible.
-    fn mend(&mut self, work: &mut FaceWork<'_>, t: u32, edge: Option<usize>) -> bool {
+    fn mend(&mut self, work: &mut FaceWork<'_, '_>, t: u32, edge: Option<usize>) -> bool {
         if edge.is_none() && self.flip_helps(work, t) {
             return true;
         }
@@ -211,7 +219,9 @@ impl<'a> Prover<'a> {
                 if side.iter().any(|&s| s > 1e-6 * size) && side.iter().any(|&s| s < -1e-6 * size) {
                     let cuts: Vec<DVec2> = (0..3)
                         .filter(|&i| side[i] * side[(i + 1) % 3] < 0.0)
-                        .map(|i| corners[i].lerp(corners[(i + 1) % 3], side[i] / (side[i] - side[(i + 1) % 3])))
+                        .map(|i| {
+                            corners[i].lerp(corners[(i + 1) % 3], side[i] / (side[i] - side[(i + 1) % 3]))
+                        })
                         .collect();
                     let mut p = cuts.iter().copied().sum::<DVec2>() / cuts.len().max(1) as f64;
                     p[axis] = value;
@@ -223,7 +233,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Flips an inner edge of `t` where both new triangles are within the tolerance.
-    fn flip_helps(&mut self, work: &mut FaceWork<'_>, t: u32) -> bool {
+    fn flip_helps(&mut self, work: &mut FaceWork<'_, '_>, t: u32) -> bool {
         for i in 0..3 {
             let other = work.mesh.neighbors[t as usize][i];
             if other == NONE {
@@ -243,14 +253,23 @@ impl<'a> Prover<'a> {
                 boundary,
             };
             // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
-            let first =
-                facet([apex, a, apex2], [outer[1][(j + 1) % 3] == NONE, false, outer[0][(i + 2) % 3] == NONE]);
-            let second =
-                facet([apex, apex2, b], [outer[1][(j + 2) % 3] == NONE, outer[0][(i + 1) % 3] == NONE, false]);
-            let turn = turns_too_far(work.normals[apex as usize], work.normals[apex2 as usize], self.limits.angle);
+            let first = facet(
+                [apex, a, apex2],
+                [outer[1][(j + 1) % 3] == NONE, false, outer[0][(i + 2) % 3] == NONE],
+            );
+            let second = facet(
+                [apex, apex2, b],
+                [outer[1][(j + 2) % 3] == NONE, outer[0][(i + 1) % 3] == NONE, false],
+            );
+            let turn =
+                turns_too_far(work.normals[apex as usize], work.normals[apex2 as usize], self.limits.angle);
             let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
             let tolerance = self.limits.tolerance;
-            if !turn && !long && self.bound(work, &first).error <= tolerance && self.bound(work, &second).error <= tolerance {
+            if !turn
+                && !long
+                && self.bound(work, &first).error <= tolerance
+                && self.bound(work, &second).error <= tolerance
+            {
                 work.mesh.flip_edge(t, i);
                 return true;
             }
@@ -259,9 +278,11 @@ impl<'a> Prover<'a> {
     }
 
     /// A boundary chord of a triangle that nothing else can mend.
-    fn coarse_boundary(&self, work: &FaceWork<'_>, t: u32) -> Option<(u32, u32)> {
+    fn coarse_boundary(&self, work: &FaceWork<'_, '_>, t: u32) -> Option<(u32, u32)> {
         (0..3).find_map(|i| match self.boundary_segment(work, t, i) {
-            Some(Segment::Edge { edge, chord }) if work.mesh.neighbors[t as usize][i] == NONE => Some((edge, chord)),
+            Some(Segment::Edge { edge, chord }) if work.mesh.neighbors[t as usize][i] == NONE => {
+                Some((edge, chord))
+            }
             _ => None,
         })
     }
@@ -275,9 +296,11 @@ fn turns_too_far(n: chordal_nurbs::DVec3, m: chordal_nurbs::DVec3, limit: f64) -
 }
 
 /// The largest distance at the middle and along the edges: an estimate, below the truth.
-fn sampled_bound(work: &FaceWork<'_>, facet: &Facet) -> FacetBound {
+fn sampled_bound(work: &FaceWork<'_, '_>, facet: &Facet) -> FacetBound {
     let [a, b, c] = facet.xyz;
-    let Some(n) = (b - a).cross(c - a).try_normalize() else { return FacetBound { error: 0.0, edges: [0.0; 3] } };
+    let Some(n) = (b - a).cross(c - a).try_normalize() else {
+        return FacetBound { error: 0.0, edges: [0.0; 3] };
+    };
     let at = |weights: [f64; 3]| {
         let uv = facet.uv[0] * weights[0] + facet.uv[1] * weights[1] + facet.uv[2] * weights[2];
         work.context.surface.point(uv)

@@ -144,7 +144,7 @@ impl Job<'_> {
         if info.uses.is_empty() {
             return EdgeSamples::default();
         }
-        let uses: Vec<EdgeUse<'_>> = info
+        let uses: Vec<EdgeUse<'_, '_>> = info
             .uses
             .iter()
             .filter_map(|&(f, pcurve)| {
@@ -153,7 +153,8 @@ impl Job<'_> {
             })
             .collect();
         let edge = &self.part.edges[index];
-        let sampled = catch_unwind(AssertUnwindSafe(|| EdgeSamples::new(self.part, edge, &uses, &self.limits, least)));
+        let sampled =
+            catch_unwind(AssertUnwindSafe(|| EdgeSamples::new(self.part, edge, &uses, &self.limits, least)));
         sampled.unwrap_or_default()
     }
 
@@ -171,8 +172,10 @@ impl Job<'_> {
     /// enclose nothing.
     fn twins(&self, edges: &[EdgeSamples]) -> Vec<usize> {
         let ends = |e: &Edge| (e.start.min(e.end), e.start.max(e.end));
-        let mut single: Vec<_> =
-            (0..edges.len()).filter(|&i| edges[i].sag.len() == 1).map(|i| (ends(&self.part.edges[i]), i)).collect();
+        let mut single: Vec<_> = (0..edges.len())
+            .filter(|&i| edges[i].sag.len() == 1)
+            .map(|i| (ends(&self.part.edges[i]), i))
+            .collect();
         single.sort_unstable();
         let mut found = Vec::new();
         for group in single.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1) {
@@ -253,17 +256,28 @@ impl Job<'_> {
         results
     }
 
-    fn describe(&self, edges: &[EdgeSamples], outcomes: &[Result<Box<FaceResult>, String>], report: &mut PartReport) {
+    fn describe(
+        &self,
+        edges: &[EdgeSamples],
+        outcomes: &[Result<Box<FaceResult>, String>],
+        report: &mut PartReport,
+    ) {
         let closed: Vec<bool> = self.part.edges.iter().map(|e| e.start == e.end).collect();
         for (index, outcome) in outcomes.iter().enumerate() {
-            let mut entry = FaceReport { face: index as u32, bound: "none", proven_error: f64::NAN, ..FaceReport::default() };
+            let mut entry = FaceReport {
+                face: index as u32,
+                bound: "none",
+                proven_error: f64::NAN,
+                ..FaceReport::default()
+            };
             match outcome {
                 Ok(result) => {
                     entry.triangles = result.triangles.len();
                     entry.proven_error = result.proven_error;
                     entry.gap = result.gap;
                     entry.bound = result.bound;
-                    entry.lower_bound = lower_bound(&self.part.faces[index], edges, &closed, result.curvature_bound);
+                    entry.lower_bound =
+                        lower_bound(&self.part.faces[index], edges, &closed, result.curvature_bound);
                 }
                 Err(reason) => entry.failed = Some(reason.clone()),
             }

@@ -66,7 +66,8 @@ impl Stitcher<'_> {
         match key {
             Key::Vertex(v) => {
                 if self.vertices[v as usize] == UNSET {
-                    self.vertices[v as usize] = self.add(self.part.vertices[v as usize].point, Origin::Vertex(v));
+                    self.vertices[v as usize] =
+                        self.add(self.part.vertices[v as usize].point, Origin::Vertex(v));
                 }
                 self.vertices[v as usize]
             }

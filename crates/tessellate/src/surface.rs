@@ -1,7 +1,7 @@
 //! A face's surface as the stages see it: charts may run over the seam of a closed surface, evaluation wraps.
 
 use chordal_nurbs::{DVec2, DVec3, Pole, Surface, SurfaceInverter, SurfaceJet, UvBox, Wrap};
-use std::cell::OnceCell;
+use std::sync::OnceLock;
 
 /// The surface of one face with what is asked of it over and over.
 pub(crate) struct FaceSurface<'a> {
@@ -9,7 +9,7 @@ pub(crate) struct FaceSurface<'a> {
     pub periods: [Option<f64>; 2],
     pub poles: Vec<Pole>,
     wrap: Wrap,
-    inverter: OnceCell<SurfaceInverter<'a>>,
+    inverter: OnceLock<SurfaceInverter<'a>>,
 }
 
 impl<'a> FaceSurface<'a> {
@@ -20,7 +20,7 @@ impl<'a> FaceSurface<'a> {
             periods: surface.periods(),
             poles: surface.poles_within(resolution),
             wrap: Wrap::of(surface),
-            inverter: OnceCell::new(),
+            inverter: OnceLock::new(),
         }
     }
 
@@ -48,14 +48,16 @@ impl<'a> FaceSurface<'a> {
         if self.is_elementary() {
             return self.surface.invert(p_xyz, near);
         }
-        let inverter = self.inverter.get_or_init(|| SurfaceInverter::new(self.surface, self.surface.domain()));
+        let inverter =
+            self.inverter.get_or_init(|| SurfaceInverter::new(self.surface, self.surface.domain()));
         let uv = inverter.invert(p_xyz, near.map(|n| self.wrap.apply(n))).uv;
         near.map_or(uv, |near| self.nearest_turn(uv, near))
     }
 
     /// The same point of the surface, moved by whole periods to be nearest to `near`.
     pub fn nearest_turn(&self, p_uv: DVec2, near: DVec2) -> DVec2 {
-        let turn = |t: f64, near: f64, period: Option<f64>| period.map_or(t, |p| t + p * ((near - t) / p).round());
+        let turn =
+            |t: f64, near: f64, period: Option<f64>| period.map_or(t, |p| t + p * ((near - t) / p).round());
         DVec2::new(turn(p_uv.x, near.x, self.periods[0]), turn(p_uv.y, near.y, self.periods[1]))
     }
 

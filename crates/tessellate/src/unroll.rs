@@ -33,7 +33,7 @@ impl Chart {
     ///
     /// # Errors
     /// A sentence, where the loops bound no region.
-    pub fn new(context: &FaceContext<'_>, limits: &Limits, seam_chord: f64) -> Result<Self, String> {
+    pub fn new(context: &FaceContext<'_, '_>, limits: &Limits, seam_chord: f64) -> Result<Self, String> {
         let (loops, lone) = context.loops()?;
         let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new() };
         let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
@@ -57,8 +57,8 @@ impl Chart {
     }
 }
 
-struct Unroll<'a> {
-    context: &'a FaceContext<'a>,
+struct Unroll<'a, 's> {
+    context: &'a FaceContext<'a, 's>,
     limits: &'a Limits,
     seam_chord: f64,
     lone: Vec<u32>,
@@ -95,7 +95,7 @@ fn along_axis(axis: usize, value: f64) -> DVec2 {
     if axis == 0 { DVec2::new(value, 0.0) } else { DVec2::new(0.0, value) }
 }
 
-impl Unroll<'_> {
+impl Unroll<'_, '_> {
     fn add_private(&mut self, p_uv: DVec2) -> Key {
         self.private.push(self.context.surface.point(p_uv));
         Key::Private(self.private.len() as u32 - 1)
@@ -143,14 +143,17 @@ impl Unroll<'_> {
                 let pole = |upper: bool| {
                     let poles = self.context.surface.poles.iter().filter(|p| p.axis == across);
                     let beyond = poles.filter(|p| (p.value > value) == upper);
-                    beyond.min_by(|p, q| (p.value - value).abs().total_cmp(&(q.value - value).abs())).map(|p| p.value)
+                    beyond
+                        .min_by(|p, q| (p.value - value).abs().total_cmp(&(q.value - value).abs()))
+                        .map(|p| p.value)
                 };
                 let value = match pole(is_lower(&a)) {
                     Some(value) => value,
                     None => {
                         // Nothing closes it on the side it claims: the file has it the wrong way round.
                         a.reverse();
-                        pole(is_lower(&a)).ok_or("one loop winds round the surface and nothing bounds the other side")?
+                        pole(is_lower(&a))
+                            .ok_or("one loop winds round the surface and nothing bounds the other side")?
                     }
                 };
                 Ok(self.cap(&a, axis, period, value))
@@ -218,7 +221,11 @@ impl Unroll<'_> {
         if let Some(last) = polygon.last_mut() {
             last.segment = Segment::Seam;
         }
-        polygon.extend(inner.iter().rev().map(|&(key, uv)| ChartPoint { uv: uv + by, key, segment: Segment::Seam }));
+        polygon.extend(inner.iter().rev().map(|&(key, uv)| ChartPoint {
+            uv: uv + by,
+            key,
+            segment: Segment::Seam,
+        }));
     }
 
     /// The region between a loop and the pole line at `value`.
@@ -238,7 +245,9 @@ impl Unroll<'_> {
 
     fn pole_key(&mut self, p_uv: DVec2) -> Key {
         let p = self.context.surface.point(p_uv);
-        let near = |v: &&u32| self.context.part.vertices[**v as usize].point.distance(p) <= 10.0 * self.context.resolution;
+        let near = |v: &&u32| {
+            self.context.part.vertices[**v as usize].point.distance(p) <= 10.0 * self.context.resolution
+        };
         match self.lone.iter().find(near) {
             Some(&v) => Key::Vertex(v),
             None => self.add_private(p_uv),
@@ -269,7 +278,14 @@ impl Unroll<'_> {
     }
 
     /// The region between two loops.
-    fn band(&mut self, a: &OpenLoop, b: &OpenLoop, axis: usize, period: f64, holes: &[OpenLoop]) -> Vec<ChartPoint> {
+    fn band(
+        &mut self,
+        a: &OpenLoop,
+        b: &OpenLoop,
+        axis: usize,
+        period: f64,
+        holes: &[OpenLoop],
+    ) -> Vec<ChartPoint> {
         let (i, j, turns) = self.bridge(a, b, axis, period, holes);
         let mut polygon = Self::once_round(a, i, axis, period);
         let step = along_axis(axis, period * f64::from(a.winding[axis]));
@@ -287,7 +303,14 @@ impl Unroll<'_> {
     }
 
     /// Points of the two loops to cut between, and by how many periods the upper one moves: the shortest cut that crosses no loop.
-    fn bridge(&self, a: &OpenLoop, b: &OpenLoop, axis: usize, period: f64, holes: &[OpenLoop]) -> (usize, usize, f64) {
+    fn bridge(
+        &self,
+        a: &OpenLoop,
+        b: &OpenLoop,
+        axis: usize,
+        period: f64,
+        holes: &[OpenLoop],
+    ) -> (usize, usize, f64) {
         let stride = |n: usize| n.div_ceil(400);
         let (du, dv) = {
             let (_, du, dv) = self.context.surface.surface.jet1(a.points[0].uv);
@@ -313,7 +336,9 @@ impl Unroll<'_> {
 
     /// True for a surface without any boundary of its own whose loops are all holes, and for a face without loops.
     fn needs_natural_boundary(&self, plain: &[OpenLoop]) -> bool {
-        let Some(largest) = plain.iter().max_by(|a, b| area(&a.points).abs().total_cmp(&area(&b.points).abs())) else {
+        let Some(largest) =
+            plain.iter().max_by(|a, b| area(&a.points).abs().total_cmp(&area(&b.points).abs()))
+        else {
             return true;
         };
         let closed = |axis: usize| {
@@ -397,7 +422,11 @@ impl Unroll<'_> {
     }
 
     /// Orients the loops, moves holes by whole periods into the outer loop.
-    fn nest(&self, outer: Option<Vec<ChartPoint>>, mut plain: Vec<OpenLoop>) -> Result<Vec<Vec<ChartPoint>>, String> {
+    fn nest(
+        &self,
+        outer: Option<Vec<ChartPoint>>,
+        mut plain: Vec<OpenLoop>,
+    ) -> Result<Vec<Vec<ChartPoint>>, String> {
         let outer = match outer {
             Some(mut polygon) => {
                 if area(&polygon) < 0.0 {
@@ -434,7 +463,8 @@ impl Unroll<'_> {
     /// The whole periods that bring a loop inside the outer one, if any do.
     fn shift_into(&self, outer: &[ChartPoint], hole: &[ChartPoint]) -> Option<DVec2> {
         let [pu, pv] = self.context.surface.periods;
-        let steps = |period: Option<f64>| if period.is_some() { vec![0.0, 1.0, -1.0, 2.0, -2.0] } else { vec![0.0] };
+        let steps =
+            |period: Option<f64>| if period.is_some() { vec![0.0, 1.0, -1.0, 2.0, -2.0] } else { vec![0.0] };
         for v in steps(pv) {
             for u in steps(pu) {
                 let by = DVec2::new(u * pu.unwrap_or(0.0), v * pv.unwrap_or(0.0));

@@ -31,7 +31,8 @@ impl Net {
     /// The net over the part from `a` to `b` of the unit interval in direction `axis`.
     fn restrict(&mut self, axis: usize, a: f64, b: f64) {
         let (rows, columns) = (self.degree[0] + 1, self.columns());
-        let (lines, count, stride, step) = if axis == 0 { (columns, rows, columns, 1) } else { (rows, columns, 1, columns) };
+        let (lines, count, stride, step) =
+            if axis == 0 { (columns, rows, columns, 1) } else { (rows, columns, 1, columns) };
         for line in 0..lines {
             let at = |i: usize| line * step + i * stride;
             // Keep the part right of a, then of that the part left of b.
@@ -95,7 +96,12 @@ impl Net {
 }
 
 /// Suuu, Suuv, Suvv, Svvv over cell (a, b) of `parts` × `parts` of the patch over `span`.
-pub(super) fn third_derivatives(patch: &BezierPatch, span: UvBox, (a, b): (usize, usize), parts: usize) -> [Ball; 4] {
+pub(super) fn third_derivatives(
+    patch: &BezierPatch,
+    span: UvBox,
+    (a, b): (usize, usize),
+    parts: usize,
+) -> [Ball; 4] {
     const THIRD: [[usize; 2]; 4] = [[3, 0], [2, 1], [1, 2], [0, 3]];
     let size = span.size() / parts as f64;
     let middle = patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64;
@@ -150,7 +156,12 @@ pub(super) fn jump_u(left: &(UvBox, BezierPatch), right: &(UvBox, BezierPatch)) 
         let [m, n] = patch.degree;
         let row = |i: usize, j: usize| i * (n + 1) + j;
         let factor = m as f64 / span.size().x;
-        end_rates((0..=n).map(|j| if last { (row(m - 1, j), row(m, j)) } else { (row(0, j), row(1, j)) }), patch, factor, last)
+        end_rates(
+            (0..=n).map(|j| if last { (row(m - 1, j), row(m, j)) } else { (row(0, j), row(1, j)) }),
+            patch,
+            factor,
+            last,
+        )
     };
     largest_jump(&rate(left, true), &rate(right, false))
 }
@@ -161,13 +172,23 @@ pub(super) fn jump_v(left: &(UvBox, BezierPatch), right: &(UvBox, BezierPatch)) 
         let [m, n] = patch.degree;
         let row = |i: usize, j: usize| i * (n + 1) + j;
         let factor = n as f64 / span.size().y;
-        end_rates((0..=m).map(|i| if last { (row(i, n - 1), row(i, n)) } else { (row(i, 0), row(i, 1)) }), patch, factor, last)
+        end_rates(
+            (0..=m).map(|i| if last { (row(i, n - 1), row(i, n)) } else { (row(i, 0), row(i, 1)) }),
+            patch,
+            factor,
+            last,
+        )
     };
     largest_jump(&rate(left, true), &rate(right, false))
 }
 
 /// The derivative across an end of a patch at its control points; of a rational one in projected form.
-fn end_rates(pairs: impl Iterator<Item = (usize, usize)>, patch: &BezierPatch, factor: f64, last: bool) -> Vec<DVec3> {
+fn end_rates(
+    pairs: impl Iterator<Item = (usize, usize)>,
+    patch: &BezierPatch,
+    factor: f64,
+    last: bool,
+) -> Vec<DVec3> {
     pairs
         .map(|(a, b)| {
             let d = (patch.points[b] - patch.points[a]) * factor;

@@ -181,7 +181,8 @@ impl Triangulation {
         let (apex2, b2, a2) = self.rotated(other, j);
         debug_assert!(a == a2 && b == b2);
         let (n_b, n_a) = (self.neighbors[t as usize][after(i)], self.neighbors[t as usize][before(i)]);
-        let (m_a, m_b) = (self.neighbors[other as usize][after(j)], self.neighbors[other as usize][before(j)]);
+        let (m_a, m_b) =
+            (self.neighbors[other as usize][after(j)], self.neighbors[other as usize][before(j)]);
         // Left of a→b: (apex, a, v) stays t, (apex, v, b) is t1; right: (apex2, b, v) is t2, (apex2, v, a) stays other.
         let t1 = self.triangles.len() as u32;
         let t2 = t1 + 1;
@@ -232,7 +233,9 @@ impl Triangulation {
             let j = self.corner_facing(other, t);
             let (_, a, b) = self.rotated(t, i);
             let apex2 = self.triangles[other as usize][j];
-            if self.wants_flip(apex, a, b, apex2, metrics) && allowed(apex, a, b, apex2) && self.can_flip(apex, a, b, apex2)
+            if self.wants_flip(apex, a, b, apex2, metrics)
+                && allowed(apex, a, b, apex2)
+                && self.can_flip(apex, a, b, apex2)
             {
                 left -= 1;
                 self.flip_edge(t, i);
@@ -267,7 +270,8 @@ impl Triangulation {
         let (apex, a, b) = self.rotated(t, i);
         let apex2 = self.triangles[other as usize][j];
         let (n_b, n_a) = (self.neighbors[t as usize][after(i)], self.neighbors[t as usize][before(i)]);
-        let (m_a, m_b) = (self.neighbors[other as usize][after(j)], self.neighbors[other as usize][before(j)]);
+        let (m_a, m_b) =
+            (self.neighbors[other as usize][after(j)], self.neighbors[other as usize][before(j)]);
         // Opposite a in t lies n_b's edge (b, apex); in `other` opposite b lies the edge (a, apex2) = m_a's.
         self.set(t, [apex, a, apex2], [m_a, other, n_a]);
         self.set(other, [apex, apex2, b], [m_b, n_b, t]);

@@ -4,7 +4,7 @@ mod mesh;
 mod sweep;
 
 pub(crate) use mesh::{Location, NONE, Triangulation};
-pub(crate) use sweep::{SweepError, sweep};
+pub(crate) use sweep::sweep;
 
 use chordal_nurbs::DVec2;
 

@@ -159,7 +159,11 @@ impl Sweep<'_> {
     fn pass(&mut self, vertex: u32, left: u32, right: u32) -> Result<(), SweepError> {
         let at = self.locate(vertex, left)?;
         let outside = SweepError { edge: left, vertex };
-        let facing = if self.interior_above(left) { self.active.get(at + 1) } else { self.active.get(at.wrapping_sub(1)) };
+        let facing = if self.interior_above(left) {
+            self.active.get(at + 1)
+        } else {
+            self.active.get(at.wrapping_sub(1))
+        };
         let facing = *facing.ok_or(outside)?;
         self.append(facing, vertex);
         self.close(left, vertex)?;
@@ -253,14 +257,26 @@ mod tests {
 
     #[test]
     fn square_with_square_hole() {
-        let p = [(0., 0.), (4., 0.), (4., 4.), (0., 4.), (1., 1.), (1., 3.), (3., 3.), (3., 1.)].map(DVec2::from);
+        let p =
+            [(0., 0.), (4., 0.), (4., 4.), (0., 4.), (1., 1.), (1., 3.), (3., 3.), (3., 1.)].map(DVec2::from);
         check(&p, &[(0, 4), (4, 8)], 12.0);
     }
 
     #[test]
     fn comb_with_collinear_points() {
-        let p = [(0., 0.), (1., 0.), (2., 0.), (3., 0.), (3., 2.), (2., 2.), (2., 1.), (1., 1.), (1., 2.), (0., 2.)]
-            .map(DVec2::from);
+        let p = [
+            (0., 0.),
+            (1., 0.),
+            (2., 0.),
+            (3., 0.),
+            (3., 2.),
+            (2., 2.),
+            (2., 1.),
+            (1., 1.),
+            (1., 2.),
+            (0., 2.),
+        ]
+        .map(DVec2::from);
         check(&p, &[(0, 10)], 5.0);
     }
 

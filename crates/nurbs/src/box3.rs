@@ -1,0 +1,44 @@
+//! Axis-aligned boxes in space.
+
+use glam::DVec3;
+
+/// An axis-aligned box in model space; may be infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Box3 {
+    pub min: DVec3,
+    pub max: DVec3,
+}
+
+impl Box3 {
+    /// The box that contains nothing.
+    pub const EMPTY: Box3 = Box3 { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| b.including(p))
+    }
+    pub fn including(self, p_xyz: DVec3) -> Self {
+        Self { min: self.min.min(p_xyz), max: self.max.max(p_xyz) }
+    }
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+    pub fn inflated(self, by: f64) -> Self {
+        Self { min: self.min - by, max: self.max + by }
+    }
+    pub fn is_empty(&self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+    pub fn is_finite(&self) -> bool {
+        self.min.is_finite() && self.max.is_finite()
+    }
+    pub fn center(&self) -> DVec3 {
+        (self.min + self.max) * 0.5
+    }
+    /// The length of the diagonal; zero where the box is empty.
+    pub fn diagonal(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+    }
+    pub fn contains(&self, p_xyz: DVec3) -> bool {
+        p_xyz.cmpge(self.min).all() && p_xyz.cmple(self.max).all()
+    }
+}

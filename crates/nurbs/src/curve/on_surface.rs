@@ -1,0 +1,99 @@
+//! Bounds of derivatives of curves that are given in the parameter space of a surface.
+//!
+//! The chain rule, with bounds of the surface's derivatives over the box that the parameter curve keeps to.
+
+use crate::{Curve, Curve2, Range, Surface, UvBox};
+use glam::DVec2;
+
+/// Norms of Su, Sv, Suu, Suv, Svv over a box.
+struct Norms {
+    first: [f64; 2],
+    second: [f64; 3],
+}
+
+pub(super) fn derivative_bound(surface: &Surface, curve: &Curve2, order: usize, range: Range) -> f64 {
+    let lifted = curve.lifted();
+    let [c1, c2] = [1, 2].map(|k| lifted.derivative_bound(k, range));
+    // Nowhere further from the middle than half the length run.
+    let reach = c1 * 0.5 * range.length();
+    if !reach.is_finite() {
+        return f64::INFINITY;
+    }
+    let middle = curve.point(0.5 * (range.start + range.end));
+    let uv = UvBox::new(middle, middle).inflated(DVec2::splat(reach));
+    let Some(s) = norms(surface, uv) else { return f64::INFINITY };
+    let first = s.first[0].hypot(s.first[1]);
+    match order {
+        1 => first * c1,
+        2 => (s.second[0] + 2.0 * s.second[1] + s.second[2]) * c1 * c1 + first * c2,
+        _ => f64::INFINITY,
+    }
+}
+
+/// `None` where nothing is proven: free-form and offset surfaces.
+fn norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
+    let farthest = |r: f64, slope: f64| (r + slope * uv.min.y).abs().max((r + slope * uv.max.y).abs());
+    Some(match surface {
+        Surface::Plane { .. } => Norms { first: [1.0, 1.0], second: [0.0; 3] },
+        Surface::Cylinder { radius, .. } => {
+            Norms { first: [radius.abs(), 1.0], second: [radius.abs(), 0.0, 0.0] }
+        }
+        Surface::Cone { radius, half_angle, .. } => {
+            let slope = half_angle.tan();
+            let r = farthest(*radius, slope);
+            Norms { first: [r, 1.0 / half_angle.cos().abs()], second: [r, slope.abs(), 0.0] }
+        }
+        Surface::Sphere { radius, .. } => {
+            let r = radius.abs();
+            Norms { first: [r, r], second: [r, r, r] }
+        }
+        Surface::Torus { major, minor, .. } => {
+            let (big, r) = (major.abs() + minor.abs(), minor.abs());
+            Norms { first: [big, r], second: [big, r, r] }
+        }
+        Surface::Extrusion { profile, direction } => {
+            let [d1, d2] = [1, 2].map(|k| profile.derivative_bound(k, uv.u()));
+            Norms { first: [d1, direction.length()], second: [d2, 0.0, 0.0] }
+        }
+        Surface::Revolution { profile, axis_origin, .. } => {
+            let [d1, d2] = [1, 2].map(|k| profile.derivative_bound(k, uv.v()));
+            let r = profile.point(uv.center().y).distance(*axis_origin) + d1 * 0.5 * uv.size().y;
+            Norms { first: [r, d1], second: [r, d1, d2] }
+        }
+        Surface::Nurbs(_) | Surface::Offset { .. } => return None,
+    })
+}
+
+impl Curve2 {
+    /// The same curve in the plane z = 0 of space, with the same parameters.
+    pub(crate) fn lifted(&self) -> Curve {
+        use crate::{CompositeSegment, Frame, Frame2};
+        let frame = |f: &Frame2| {
+            let (x, y) = (f.x.extend(0.0), f.y.extend(0.0));
+            Frame { origin: f.origin.extend(0.0), x, y, z: x.cross(y) }
+        };
+        match self {
+            Curve2::Line { origin, direction } => {
+                Curve::Line { origin: origin.extend(0.0), direction: direction.extend(0.0) }
+            }
+            Curve2::Circle { frame: f, radius } => Curve::Circle { frame: frame(f), radius: *radius },
+            Curve2::Ellipse { frame: f, a, b } => Curve::Ellipse { frame: frame(f), a: *a, b: *b },
+            Curve2::Parabola { frame: f, focal } => Curve::Parabola { frame: frame(f), focal: *focal },
+            Curve2::Hyperbola { frame: f, a, b } => Curve::Hyperbola { frame: frame(f), a: *a, b: *b },
+            Curve2::Polyline(points) => Curve::Polyline(points.iter().map(|p| p.extend(0.0)).collect()),
+            Curve2::Nurbs(curve) => Curve::Nurbs(curve.mapped(|p| p.extend(0.0))),
+            Curve2::Composite(pieces) => Curve::Composite(
+                pieces
+                    .iter()
+                    .map(|(c, start, end)| CompositeSegment { curve: c.lifted(), start: *start, end: *end })
+                    .collect(),
+            ),
+            // Crossed with the plane's normal a direction turns to the right.
+            Curve2::Offset { basis, distance } => Curve::Offset {
+                basis: Box::new(basis.lifted()),
+                distance: *distance,
+                reference: glam::DVec3::Z,
+            },
+        }
+    }
+}
