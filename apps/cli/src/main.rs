@@ -1,1 +1,60 @@
-fn main() {}
+//! The command line `chordal`: arguments in, exit codes out; everything else is the facade's.
+
+mod args;
+mod bench;
+mod check;
+mod exit;
+mod guard;
+mod info;
+mod mesh;
+mod outputs;
+mod progress;
+
+use args::{Cli, Command};
+use clap::Parser;
+use clap::error::ErrorKind;
+use exit::{Exit, say};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    // A face that panics is that face's failure, reported by the library: the hook's own words would be noise.
+    guard::silence();
+    let exit = guard::guarded(run).unwrap_or_else(|sentence| {
+        say(&sentence);
+        Exit::Nothing
+    });
+    exit.code()
+}
+
+fn run() -> Exit {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    match cli.command {
+        Command::Mesh(args) => mesh::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Bench(args) => bench::run(&args),
+    }
+}
+
+/// Help and version as they are; of an error the first paragraph, which is the sentence.
+fn usage(error: &clap::Error) -> Exit {
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            exit::print(&error.render().to_string());
+            Exit::Clean
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            eprint!("{}", error.render());
+            Exit::Nothing
+        }
+        _ => {
+            let text = error.render().to_string();
+            let paragraph: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect();
+            say(paragraph.join(" ").trim_start_matches("error: "));
+            Exit::Nothing
+        }
+    }
+}

@@ -1,1 +1,55 @@
-//! (to be written)
+//! CAD geometry in, proven watertight meshes out: the one crate that a user adds.
+//!
+//! ```no_run
+//! use chordal::{Job, JobOptions, Tolerance};
+//!
+//! let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.05));
+//! let outcome = chordal::run(&Job::new("part.step").with_output("part.glb").with_options(options))?;
+//! println!("{} triangles within {:?} mm", outcome.report.triangles, outcome.report.proven_error);
+//! # Ok::<(), chordal::JobError>(())
+//! ```
+
+mod account;
+mod analytic;
+mod auditing;
+mod check;
+mod edge_count;
+mod error;
+mod gaps;
+mod info;
+mod job;
+mod names;
+mod options;
+mod placement;
+mod process;
+mod progress;
+mod quantity;
+pub mod report;
+mod resolve;
+mod scene;
+mod tight_box;
+mod whole_file;
+
+pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
+pub use error::JobError;
+pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};
+pub use job::{Job, MeshedPart, Outcome, mesh_parts, read_model, run, thread_pool};
+pub use options::{JobOptions, Strategy};
+pub use placement::{PartUse, part_uses};
+pub use process::peak_memory;
+pub use progress::{OnProgress, Progress};
+pub use quantity::{QuantityError, Tolerance, parse_angle, parse_length};
+pub use report::{REPORT_SCHEMA, Report};
+pub use resolve::{Resolved, resolve};
+pub use tight_box::{TightBox, edge_box, tight_box};
+pub use whole_file::write_whole;
+
+pub use chordal_audit as audit;
+pub use chordal_brep as brep;
+pub use chordal_mesh as mesh;
+pub use chordal_nurbs as nurbs;
+pub use chordal_read as read;
+pub use chordal_tessellate as tessellate;
+pub use chordal_tessellate::{Bound, Cancel};
+pub use chordal_write as write;
+pub use chordal_write::{Format, Unit, UpAxis};

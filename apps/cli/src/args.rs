@@ -1,0 +1,248 @@
+//! The command line: what can be asked, with its units and defaults.
+
+use chordal::{Bound, Format, JobOptions, Strategy, Tolerance, Unit, UpAxis};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// CAD geometry in, watertight meshes of proven accuracy out.
+///
+/// Exit codes: 0, all was done; 1, a mesh was written but something was left undone (the report says what);
+/// 2, nothing was written. Data goes to standard output, talk to standard error.
+#[derive(Debug, Parser)]
+#[command(name = "chordal", version, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Mesh CAD files: STEP in; STL, PLY, OBJ, GLB or 3MF out.
+    Mesh(MeshArgs),
+    /// Say what is in a CAD file: tree, units, faces by kind, gaps, loose items, warnings.
+    Info(InfoArgs),
+    /// Check a mesh file: closed, oriented, without degenerate and duplicate triangles.
+    Check(CheckArgs),
+    /// Time reading and meshing in process.
+    #[command(hide = true)]
+    Bench(BenchArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct MeshArgs {
+    /// CAD files.
+    #[arg(required = true, value_name = "IN")]
+    pub inputs: Vec<PathBuf>,
+    /// The mesh file, or a folder (one that exists, or a name that ends in `/`); a folder where there are several
+    /// inputs.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
+    /// The format of the output [default: by the extension of OUT; needed where OUT is a folder].
+    #[arg(long, value_enum)]
+    pub format: Option<FormatArg>,
+    /// The unit of the written coordinates: um, mm, cm, m, in or ft [default: mm, in GLB m].
+    #[arg(long)]
+    pub unit: Option<Unit>,
+    /// The axis of the written file that points up [default: z, in GLB y].
+    #[arg(long, value_enum)]
+    pub up: Option<UpArg>,
+    /// Write the edges of the model as lines too (GLB only).
+    #[arg(long)]
+    pub edges: bool,
+    /// Write the report to this file, as JSON; one object for one input, a list for several.
+    #[arg(long, value_name = "R.json")]
+    pub report: Option<PathBuf>,
+    /// Write nothing at all, and exit with 2, where anything would be left undone.
+    #[arg(long)]
+    pub strict: bool,
+    /// Show no progress and echo no options.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// What is asked of the mesh, and the threads.
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// Largest distance between the mesh and the exact surfaces: a length with its unit (0.1mm, 50um, 0.002in; a bare
+    /// number is in mm), or a percentage of the diagonal of the tight axis-aligned box of the whole model (0.05%).
+    #[arg(
+        long, visible_aliases = ["sag", "linear-deflection"], value_name = "LENGTH|%", default_value = "0.1%",
+        allow_hyphen_values = true
+    )]
+    pub tolerance: Tolerance,
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face: 20deg, 0.35rad, a bare
+    /// number in degrees, or `off`.
+    #[arg(
+        long, visible_alias = "angular-deflection", value_name = "ANGLE", default_value = "20deg",
+        value_parser = parse_angle, allow_hyphen_values = true
+    )]
+    pub angle: AngleArg,
+    /// Longest mesh edge, a length with its unit (a bare number is in mm) [default: no limit].
+    #[arg(long, value_name = "LENGTH", value_parser = chordal::parse_length, allow_hyphen_values = true)]
+    pub max_edge: Option<f64>,
+    /// How points are placed and connected.
+    #[arg(long, value_enum, default_value = "default")]
+    pub strategy: StrategyArg,
+    /// Whether the error of a facet is proven by an upper bound or estimated from samples.
+    #[arg(long, value_enum, default_value = "proven")]
+    pub bound: BoundArg,
+    /// Threads [default: one per core]. The output is the same for any number.
+    #[arg(long, value_name = "N", value_parser = parse_jobs)]
+    pub jobs: Option<usize>,
+    /// Seconds after which a face is given up, 0 for never.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
+    pub face_timeout: TimeoutArg,
+}
+
+/// Radians; `None`: no limit.
+#[derive(Clone, Copy, Debug)]
+pub struct AngleArg(pub Option<f64>);
+
+/// `None`: never.
+#[derive(Clone, Copy, Debug)]
+pub struct TimeoutArg(pub Option<Duration>);
+
+fn parse_angle(text: &str) -> Result<AngleArg, chordal::QuantityError> {
+    chordal::parse_angle(text).map(AngleArg)
+}
+
+fn parse_jobs(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1..=1024) => Ok(n),
+        _ => Err("not a number of threads from 1 to 1024".into()),
+    }
+}
+
+fn parse_seconds(text: &str) -> Result<TimeoutArg, String> {
+    let seconds: f64 = text.trim().trim_end_matches('s').parse().map_err(|_| "not a number of seconds".to_owned())?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(time) => Ok(TimeoutArg((!time.is_zero()).then_some(time))),
+        Err(_) => Err("not a number of seconds".into()),
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum StrategyArg {
+    /// Grids and strips where the surface allows them, points in the sizing metric elsewhere.
+    Default,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum BoundArg {
+    /// The tolerance is a promise.
+    Proven,
+    /// Faster, no promise.
+    Estimated,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum FormatArg {
+    /// Binary STL.
+    Stl,
+    /// ASCII STL, one named solid per part.
+    StlAscii,
+    /// Binary PLY with double coordinates.
+    Ply,
+    Obj,
+    Glb,
+    #[value(name = "3mf")]
+    ThreeMf,
+}
+
+impl FormatArg {
+    pub fn format(self) -> Format {
+        match self {
+            FormatArg::Stl => Format::StlBinary,
+            FormatArg::StlAscii => Format::StlAscii,
+            FormatArg::Ply => Format::Ply,
+            FormatArg::Obj => Format::Obj,
+            FormatArg::Glb => Format::Glb,
+            FormatArg::ThreeMf => Format::ThreeMf,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum UpArg {
+    Y,
+    Z,
+}
+
+impl AccuracyArgs {
+    /// As the library's options.
+    pub fn options(&self) -> JobOptions {
+        let strategy = match self.strategy {
+            StrategyArg::Default => Strategy::Default,
+        };
+        let bound = match self.bound {
+            BoundArg::Proven => Bound::Proven,
+            BoundArg::Estimated => Bound::Estimated,
+        };
+        JobOptions::default()
+            .with_tolerance(self.tolerance)
+            .with_angle(self.angle.0)
+            .with_max_edge(self.max_edge)
+            .with_strategy(strategy)
+            .with_bound(bound)
+            .with_jobs(self.jobs)
+            .with_face_timeout(self.face_timeout.0)
+    }
+}
+
+impl MeshArgs {
+    /// As the library's options.
+    pub fn options(&self) -> JobOptions {
+        let up = self.up.map(|up| match up {
+            UpArg::Y => UpAxis::Y,
+            UpArg::Z => UpAxis::Z,
+        });
+        self.accuracy
+            .options()
+            .with_format(self.format.map(FormatArg::format))
+            .with_unit(self.unit)
+            .with_up(up)
+            .with_edges(self.edges)
+            .with_strict(self.strict)
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// A CAD file.
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Print JSON instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// A mesh file: STL, PLY, OBJ, GLB or 3MF.
+    #[arg(value_name = "MESH")]
+    pub mesh: PathBuf,
+    /// The unit of the mesh's coordinates [default: what the file says, else mm].
+    #[arg(long)]
+    pub unit: Option<Unit>,
+    /// Print JSON instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// CAD files.
+    #[arg(required = true, value_name = "IN")]
+    pub inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
+    /// Timed repetitions.
+    #[arg(long, default_value = "5", value_name = "N")]
+    pub repeat: usize,
+    /// Repetitions before the clock starts.
+    #[arg(long, default_value = "1", value_name = "N")]
+    pub warm: usize,
+}

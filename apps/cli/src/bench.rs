@@ -1,0 +1,89 @@
+//! `chordal bench`: CPU seconds of reading and meshing in process, for comparison with other kernels.
+
+use crate::args::BenchArgs;
+use crate::exit::{Exit, print, say};
+use chordal::{Cancel, JobError, JobOptions};
+use serde::Serialize;
+use std::path::Path;
+use std::time::Instant;
+
+/// One file.
+#[derive(Debug, Serialize)]
+struct Timing {
+    input: String,
+    bytes: u64,
+    faces: usize,
+    triangles: usize,
+    /// In millimetres.
+    tolerance: f64,
+    /// One per repetition, in seconds: CPU time of all threads, where the system tells, else wall time.
+    read: Vec<f64>,
+    mesh: Vec<f64>,
+    clock: &'static str,
+}
+
+pub fn run(args: &BenchArgs) -> Exit {
+    // One thread unless told otherwise: what is compared is work, not cores.
+    let options = args.accuracy.options().with_jobs(Some(args.accuracy.jobs.unwrap_or(1)));
+    let pool = match chordal::thread_pool(options.jobs) {
+        Ok(pool) => pool,
+        Err(error) => {
+            say(&error.to_string());
+            return Exit::Nothing;
+        }
+    };
+    let mut timings = Vec::new();
+    for input in &args.inputs {
+        match pool.install(|| time(input, &options, args.warm, args.repeat)) {
+            Ok(timing) => timings.push(timing),
+            Err(error) => say(&error.to_string()),
+        }
+    }
+    print(&(serde_json::to_string_pretty(&timings).expect("timings have string keys only") + "\n"));
+    if timings.len() == args.inputs.len() { Exit::Clean } else { Exit::Nothing }
+}
+
+fn time(input: &Path, options: &JobOptions, warm: usize, repeat: usize) -> Result<Timing, JobError> {
+    let cancel = Cancel::default();
+    let mut timing = Timing {
+        input: input.display().to_string(),
+        bytes: std::fs::metadata(input).map_or(0, |m| m.len()),
+        faces: 0,
+        triangles: 0,
+        tolerance: 0.0,
+        read: Vec::new(),
+        mesh: Vec::new(),
+        clock: if cpu_seconds().is_some() { "cpu" } else { "wall" },
+    };
+    let origin = Instant::now();
+    let now = || cpu_seconds().unwrap_or_else(|| origin.elapsed().as_secs_f64());
+    for round in 0..warm + repeat.max(1) {
+        let started = now();
+        let model = chordal::read_model(input)?;
+        let was_read = now();
+        let resolved = chordal::resolve(&model, options, None, input, &cancel)?;
+        let parts = chordal::mesh_parts(&model, &resolved, &cancel, &|_| ());
+        let meshed = now();
+        if round >= warm {
+            timing.read.push(was_read - started);
+            timing.mesh.push(meshed - was_read);
+        }
+        timing.tolerance = resolved.tolerance;
+        timing.faces = model.placed_faces();
+        timing.triangles =
+            parts.iter().zip(&resolved.uses).map(|(p, u)| p.mesh.triangle_count() * u.instances).sum();
+    }
+    Ok(timing)
+}
+
+/// CPU time of this process, all threads, in seconds.
+#[cfg(unix)]
+fn cpu_seconds() -> Option<f64> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9)
+}
+
+#[cfg(not(unix))]
+fn cpu_seconds() -> Option<f64> {
+    None
+}

@@ -1,0 +1,142 @@
+//! `chordal mesh`: one job per input.
+
+use crate::args::MeshArgs;
+use crate::exit::{Exit, say};
+use crate::guard::guarded;
+use crate::outputs::{Outputs, plan};
+use crate::progress::Bar;
+use chordal::report::{Batch, BatchFailure};
+use chordal::{Cancel, Job, Report};
+use std::path::Path;
+
+/// At most so many warnings of one input are shown; the report has all.
+const WARNINGS_SHOWN: usize = 3;
+
+pub fn run(args: &MeshArgs) -> Exit {
+    let cancel = Cancel::default();
+    stop_on_ctrl_c(&cancel);
+    let outputs = match check_report_path(args).and_then(|()| plan(args)) {
+        Ok(outputs) => outputs,
+        Err(sentence) => {
+            say(&sentence);
+            return Exit::Nothing;
+        }
+    };
+    let mut batch = Batch::default();
+    for (input, output) in args.inputs.iter().zip(outputs.files()) {
+        match mesh_one(args, input, output, &cancel) {
+            Ok(report) => batch.reports.push(report),
+            Err(error) => {
+                say(&error);
+                batch.failed.push(BatchFailure { input: input.display().to_string(), error });
+            }
+        }
+        // All or nothing: there is no use in going on.
+        if args.strict && !batch.failed.is_empty() {
+            break;
+        }
+    }
+    finish(args, outputs, &mut batch)
+}
+
+/// Settles what was written, and how the program ends.
+fn finish(args: &MeshArgs, outputs: Outputs, batch: &mut Batch) -> Exit {
+    if batch.reports.is_empty() || (args.strict && !batch.failed.is_empty()) {
+        outputs.discard();
+        return Exit::Nothing;
+    }
+    if let Err(sentence) = outputs.settle(batch) {
+        say(&sentence);
+        return Exit::Nothing;
+    }
+    let mut exit = if batch.failed.is_empty() && batch.reports.iter().all(|r| r.clean) { Exit::Clean } else { Exit::Undone };
+    if let Err(sentence) = write_report(args, batch) {
+        say(&sentence);
+        exit = exit.max(Exit::Undone);
+    }
+    exit
+}
+
+fn mesh_one(args: &MeshArgs, input: &Path, output: &Path, cancel: &Cancel) -> Result<Report, String> {
+    let name = input.file_name().map_or_else(|| input.to_string_lossy(), |n| n.to_string_lossy());
+    let bar = Bar::new(&name, args.quiet);
+    let job = Job::new(input)
+        .with_output(output)
+        .with_options(args.options())
+        .with_cancel(cancel.clone())
+        .with_progress(bar.listener());
+    let outcome = guarded(|| chordal::run(&job)).map_err(|e| format!("{}: {e}", input.display()))?;
+    drop(bar);
+    let report = outcome.map_err(|e| e.to_string())?.report;
+    tell(args, &report);
+    Ok(report)
+}
+
+/// Echoes the resolved options and the result.
+fn tell(args: &MeshArgs, report: &Report) {
+    let input = &report.input.path;
+    if !args.quiet {
+        let options = &report.options;
+        let angle = options.angle.map_or_else(|| "off".into(), |a| format!("{a:.4}°"));
+        let max_edge = options.max_edge.map_or_else(String::new, |l| format!(", longest edge {l} mm"));
+        let tolerance = options.tolerance;
+        say(&format!(
+            "{input}: tolerance {} = {tolerance:.6} mm, angle {angle}{max_edge}, {} bound, {} threads",
+            options.tolerance_asked, options.bound, report.threads
+        ));
+        let error = report.proven_error.map_or_else(|| "nothing proven".into(), |e| format!("proven error {e:.6} mm"));
+        say(&format!(
+            "{input}: {} faces, {} triangles, {error}, gap {:.2e} mm, {}, {:.2} s",
+            report.faces.total,
+            report.triangles,
+            report.max_gap,
+            if report.watertight { "watertight" } else { "not watertight" },
+            report.seconds.total
+        ));
+        for warning in report.warnings.iter().take(WARNINGS_SHOWN) {
+            let id = if warning.id.is_empty() { String::new() } else { format!(" {} (line {}):", warning.id, warning.line) };
+            say(&format!("{input}: warning:{id} {}", warning.message));
+        }
+        if report.warnings.len() > WARNINGS_SHOWN {
+            say(&format!("{input}: {} more warnings are in the report", report.warnings.len() - WARNINGS_SHOWN));
+        }
+    }
+    for sentence in &report.undone {
+        say(&format!("{input}: left undone: {sentence}"));
+    }
+}
+
+fn check_report_path(args: &MeshArgs) -> Result<(), String> {
+    let Some(path) = &args.report else { return Ok(()) };
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Err(format!("{}: there is no such folder to write the report to", path.display()))
+        }
+        _ if path.is_dir() => Err(format!("{}: the report needs a file name, this is a folder", path.display())),
+        _ => Ok(()),
+    }
+}
+
+/// One report for one input, a batch for several; complete or not at all.
+fn write_report(args: &MeshArgs, batch: &Batch) -> Result<(), String> {
+    let Some(path) = &args.report else { return Ok(()) };
+    let text = match (&batch.reports[..], args.inputs.len()) {
+        ([only], 1) => only.to_json(),
+        _ => batch.to_json(),
+    };
+    chordal::write_whole(path, &text).map_err(|e| format!("{}: cannot write the report: {e}", path.display()))
+}
+
+/// The first Ctrl-C ends the work at the next face, the second at once; neither leaves a half-written file.
+fn stop_on_ctrl_c(cancel: &Cancel) {
+    let cancel = cancel.clone();
+    let stop = move || {
+        if cancel.is_cancelled() {
+            std::process::exit(2);
+        }
+        cancel.cancel();
+    };
+    if ctrlc::set_handler(stop).is_err() {
+        say("Ctrl-C cannot be caught here and ends the program at once");
+    }
+}

@@ -1,0 +1,220 @@
+//! Options, exit codes, channels and files.
+
+mod common;
+
+use common::{chordal, corpus, files_in, json, model, run};
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn help_and_version_are_data() {
+    for line in ["--help", "-h", "mesh --help", "info --help", "check --help", "bench --help", "--version"] {
+        let ran = run(line, &[]).exits(&[0]);
+        assert!(!ran.stdout.is_empty() && ran.stderr.is_empty(), "{line}");
+    }
+    assert!(run("--version", &[]).stdout.starts_with("chordal 0."));
+    let help = run("mesh --help", &[]).stdout;
+    for word in ["0.1%", "20deg", "--sag", "linear-deflection", "angular-deflection", "a bare number is in mm"] {
+        assert!(help.contains(word), "{word}");
+    }
+    assert!(!run("--help", &[]).stdout.contains("bench"));
+}
+
+#[test]
+fn mistakes_are_one_sentence_and_exit_2() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.stl");
+    let bracket = model("bracket");
+    let cases: [(&str, &[&Path], &str); 16] = [
+        ("mesh {} -o {} --tolerance 0", &[&bracket, &out], "greater than zero"),
+        ("mesh {} -o {} --tolerance -1mm", &[&bracket, &out], "greater than zero"),
+        ("mesh {} -o {} --tolerance 0.1furlong", &[&bracket, &out], "furlong"),
+        ("mesh {} -o {} --tolerance nan", &[&bracket, &out], "number"),
+        ("mesh {} -o {} --sag 1mm%", &[&bracket, &out], "percentage"),
+        ("mesh {} -o {} --angle 20mm", &[&bracket, &out], "angle"),
+        ("mesh {} -o {} --jobs 0", &[&bracket, &out], "threads"),
+        ("mesh {} -o {} --unit parsec", &[&bracket, &out], "parsec"),
+        ("mesh {} -o {} --tollerance 1mm", &[&bracket, &out], "--tollerance"),
+        ("mesh {}", &[&bracket], "--output"),
+        ("mesh {} -o {}.xyz", &[&bracket], "{}.xyz"),
+        ("mesh no-such-file.step -o {}", &[&out], "no-such-file.step"),
+        ("mesh {} -o no-such-folder/out.stl", &[&bracket], "no-such-folder"),
+        ("mesh {} {} -o {}", &[&bracket, &bracket, &out], "folder"),
+        ("mesh {} -o {} --report no-such-folder/r.json", &[&bracket, &out], "no-such-folder"),
+        ("frobnicate", &[], "frobnicate"),
+    ];
+    for (line, paths, word) in cases {
+        let ran = run(line, paths).exits(&[2]).says_one_sentence();
+        assert!(ran.stderr.contains(word), "{line}: {}", ran.stderr);
+    }
+    assert_eq!(files_in(folder.path()), [""; 0]);
+}
+
+#[test]
+fn a_tolerance_that_no_coordinate_can_hold_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.ply");
+    let ran = run("mesh {} -o {} --tolerance 1e-18mm", &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
+    assert!(ran.stderr.contains("double-precision"), "{}", ran.stderr);
+    assert!(!out.exists());
+}
+
+#[test]
+fn an_output_is_never_an_input() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("copy.step");
+    fs::copy(model("bracket"), &copy).expect("a copy");
+    let ran = run("mesh {} -o {} --format ply", &[&copy, &copy]).exits(&[2]).says_one_sentence();
+    assert!(ran.stderr.contains("one of the inputs"), "{}", ran.stderr);
+    assert_eq!(fs::read(&copy).expect("bytes"), fs::read(model("bracket")).expect("bytes"));
+}
+
+#[test]
+fn a_mesh_goes_to_its_file_and_talk_to_standard_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["a.stl", "a.ply", "a.obj", "a.glb", "a.3mf"] {
+        let out = folder.path().join(name);
+        let ran = run("mesh {} -o {}", &[&model("bracket"), &out]).exits(&[0]);
+        assert_eq!(ran.stdout, "");
+        assert!(ran.stderr.contains("tolerance 0.1 % = ") && ran.stderr.contains("angle 20"), "{}", ran.stderr);
+        assert!(fs::metadata(&out).expect("a mesh").len() > 1000, "{name}");
+        let ran = run("mesh {} -o {} --quiet", &[&model("bracket"), &out]).exits(&[0]);
+        assert_eq!((ran.stdout.as_str(), ran.stderr.as_str()), ("", ""));
+    }
+}
+
+#[test]
+fn the_report_says_what_was_done() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, report) = (folder.path().join("out.ply"), folder.path().join("r.json"));
+    let line = "mesh {} -o {} --report {} --tolerance 50um --angle off --max-edge 1cm --jobs 2";
+    run(line, &[&model("bracket"), &out, &report]).exits(&[0]);
+    let report = json(&report);
+    assert_eq!(report["schema"], "chordal-report/1");
+    assert_eq!(report["options"]["tolerance"], 0.05);
+    assert_eq!(report["options"]["angle"], serde_json::Value::Null);
+    assert_eq!(report["options"]["max_edge"], 10.0);
+    assert_eq!(report["threads"], 2);
+    assert_eq!(report["faces"]["total"], 28);
+    assert_eq!(report["faces"]["meshed"], 28);
+    assert_eq!(report["watertight"], true);
+    assert_eq!(report["clean"], true);
+    assert!(report["proven_error"].as_f64().is_some_and(|e| e > 0.0 && e <= 0.05));
+    assert_eq!(report["face_list"].as_array().map(Vec::len), Some(28));
+    for field in ["max_gap", "lower_bound", "rounds", "triangles", "vertices", "open_edges", "peak_memory"] {
+        assert!(report[field].is_number(), "{field}");
+    }
+    for stage in ["read", "heal", "edges", "faces", "stitch", "audit", "write"] {
+        assert!(report["seconds"][stage].is_number(), "{stage}");
+    }
+}
+
+#[test]
+fn every_field_of_a_report_is_documented() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, path) = (folder.path().join("out.ply"), folder.path().join("r.json"));
+    run("mesh {} -o {} --report {}", &[&model("bracket"), &out, &path]).exits(&[0, 1]);
+    let documented = fs::read_to_string(corpus().join("../docs/report.md")).expect("the documentation");
+    let report = json(&path);
+    let fields = report.as_object().expect("an object").iter().flat_map(|(name, value)| {
+        let of = value.as_array().and_then(|list| list.first()).unwrap_or(value);
+        let inner: Vec<String> = of.as_object().map_or(Vec::new(), |o| o.keys().cloned().collect());
+        std::iter::once(name.clone()).chain(inner)
+    });
+    for field in fields {
+        let named = [format!("`{field}`"), format!("{field},"), format!("{field}}}"), format!("{{{field}")];
+        assert!(named.iter().any(|name| documented.contains(name)), "docs/report.md does not mention {field}");
+    }
+}
+
+#[test]
+fn many_inputs_go_to_a_folder_without_collisions() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let other = folder.path().join("other");
+    fs::create_dir(&other).expect("a folder");
+    let twin = other.join("Bracket.step");
+    fs::copy(model("bracket"), &twin).expect("a copy");
+    let out = folder.path().join("out/");
+    let slash = format!("{}/", out.display());
+    let report = folder.path().join("r.json");
+
+    let ran = run("mesh {} {} -o {}", &[&model("bracket"), &twin, Path::new(&slash)]).exits(&[2]).says_one_sentence();
+    assert!(ran.stderr.contains("--format"), "{}", ran.stderr);
+
+    let line = "mesh {} {} {} -o {} --format ply --report {}";
+    run(line, &[&model("bracket"), &twin, &model("sphere_full"), Path::new(&slash), &report]).exits(&[0]);
+    assert_eq!(files_in(&out), ["Bracket-2.ply", "bracket.ply", "sphere_full.ply"]);
+    let batch = json(&report);
+    assert_eq!(batch["schema"], "chordal-report-batch/1");
+    assert_eq!(batch["reports"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn one_bad_input_of_many_is_exit_1_and_with_strict_nothing_at_all() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let empty = corpus().join("bad/empty.step");
+    let out = folder.path().join("out");
+    let slash = format!("{}/", out.display());
+    let line = "mesh {} {} -o {} --format stl";
+    run(line, &[&model("bracket"), &empty, Path::new(&slash)]).exits(&[1]);
+    assert_eq!(files_in(&out), ["bracket.stl"]);
+
+    let strict = folder.path().join("strict");
+    let slash = format!("{}/", strict.display());
+    let line = "mesh {} {} -o {} --format stl --strict";
+    run(line, &[&model("bracket"), &empty, Path::new(&slash)]).exits(&[2]);
+    assert!(!strict.exists());
+    let line = "mesh {} {} -o {} --format obj --strict";
+    run(line, &[&model("bracket"), &model("sphere_full"), Path::new(&slash)]).exits(&[0]);
+    assert_eq!(files_in(&strict), ["bracket.obj", "sphere_full.obj"]);
+}
+
+#[test]
+fn strict_writes_nothing_where_anything_is_left_undone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let broken = corpus().join("bad/missing_entity.step");
+    let (out, report) = (folder.path().join("out.ply"), folder.path().join("r.json"));
+    let ran = run("mesh {} -o {} --report {} --strict", &[&broken, &out, &report]).exits(&[2]).says_one_sentence();
+    assert!(ran.stderr.contains("--strict"), "{}", ran.stderr);
+    assert_eq!(files_in(folder.path()), [""; 0]);
+
+    let ran = run("mesh {} -o {} --report {}", &[&broken, &out, &report]).exits(&[1]);
+    assert!(ran.stderr.contains("left undone") && ran.stderr.contains('#'), "{}", ran.stderr);
+    let report = json(&report);
+    assert_eq!(report["clean"], false);
+    let failed = &report["faces"]["failed"][0];
+    assert!(failed["id"].as_str().is_some_and(|id| id.starts_with('#')) && failed["line"].as_u64() > Some(0));
+}
+
+#[test]
+fn info_is_data() {
+    let ran = run("info {}", &[&model("bracket")]).exits(&[0]);
+    assert!(ran.stderr.is_empty(), "{}", ran.stderr);
+    for word in ["28", "plane", "cylinder", "tree", "gaps", "unit"] {
+        assert!(ran.stdout.contains(word), "{word} is not in\n{}", ran.stdout);
+    }
+    let ran = run("info {} --json", &[&model("assembly_200")]).exits(&[0]);
+    let info: serde_json::Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!(info["faces"], 1280);
+    assert_eq!(info["parts"].as_array().map(Vec::len), Some(4));
+    run("info no-such-file", &[]).exits(&[2]).says_one_sentence();
+}
+
+#[test]
+fn bench_prints_its_timings() {
+    let line = "bench {} --repeat 2 --warm 0 --tolerance 0.1mm";
+    let ran = run(line, &[&model("bracket")]).exits(&[0]);
+    let timings: serde_json::Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!(timings[0]["mesh"].as_array().map(Vec::len), Some(2));
+    assert_eq!(timings[0]["faces"], 28);
+}
+
+#[test]
+fn an_unwritable_output_leaves_what_was_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.ply");
+    fs::write(&out, "before").expect("a file");
+    run("mesh {} -o {}", &[&corpus().join("bad/not_step.step"), &out]).exits(&[2]).says_one_sentence();
+    assert_eq!(fs::read_to_string(&out).expect("a file"), "before");
+    chordal(["mesh"]).exits(&[2]).says_one_sentence();
+}

@@ -1,0 +1,99 @@
+//! Runs the program as a user does.
+#![allow(dead_code, reason = "every test file uses its own part of this")]
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What one run said and how it ended.
+#[derive(Debug)]
+pub struct Ran {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Ran {
+    /// The exit code must be one of `codes`.
+    #[track_caller]
+    pub fn exits(self, codes: &[i32]) -> Self {
+        assert!(codes.contains(&self.code), "exit {} is none of {codes:?}; stderr:\n{}", self.code, self.stderr);
+        self
+    }
+
+    /// One line on standard error, nothing on standard output.
+    #[track_caller]
+    pub fn says_one_sentence(self) -> Self {
+        assert_eq!(self.stderr.lines().count(), 1, "stderr:\n{}", self.stderr);
+        assert!(self.stderr.starts_with("chordal: "), "stderr:\n{}", self.stderr);
+        assert_eq!(self.stdout, "");
+        self
+    }
+}
+
+/// Runs `chordal` with these arguments.
+pub fn chordal<S: AsRef<OsStr>>(args: impl IntoIterator<Item = S>) -> Ran {
+    let output = Command::new(env!("CARGO_BIN_EXE_chordal")).args(args).output().expect("the program starts");
+    Ran {
+        code: output.status.code().expect("the program was not killed"),
+        stdout: String::from_utf8(output.stdout).expect("stdout is UTF-8"),
+        stderr: String::from_utf8(output.stderr).expect("stderr is UTF-8"),
+    }
+}
+
+/// Runs a command line without spaces in its arguments, paths put in for `{}`.
+pub fn run(line: &str, paths: &[&Path]) -> Ran {
+    let mut paths = paths.iter();
+    let args: Vec<String> = line
+        .split_whitespace()
+        .map(|word| match word {
+            "{}" => paths.next().expect("a path for every {}").display().to_string(),
+            other => other.to_owned(),
+        })
+        .collect();
+    chordal(args)
+}
+
+pub fn corpus() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").canonicalize().expect("the corpus is in the repository")
+}
+
+pub fn model(name: &str) -> PathBuf {
+    corpus().join(name).with_extension("step")
+}
+
+/// The rows of an index, each by the names of its columns.
+pub struct Row {
+    columns: Vec<(String, String)>,
+}
+
+impl Row {
+    #[track_caller]
+    pub fn get(&self, column: &str) -> &str {
+        &self.columns.iter().find(|(name, _)| name == column).expect("a column of the index").1
+    }
+}
+
+pub fn index(path: &Path) -> Vec<Row> {
+    let text = std::fs::read_to_string(path).expect("the index is in the repository");
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().expect("a header").split('\t').collect();
+    lines
+        .map(|line| Row {
+            columns: names.iter().zip(line.split('\t')).map(|(n, v)| ((*n).to_owned(), v.to_owned())).collect(),
+        })
+        .collect()
+}
+
+pub fn files_in(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+pub fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&std::fs::read_to_string(path).expect("a report")).expect("JSON")
+}

@@ -1,0 +1,48 @@
+//! Why a job wrote nothing; each message is one sentence.
+
+use chordal_read::ReadError;
+use chordal_write::WriteError;
+use std::path::PathBuf;
+
+/// Why a job wrote nothing.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JobError {
+    #[error("{}: {source}", path.display())]
+    Read { path: PathBuf, source: ReadError },
+    #[error("{}: {source}", path.display())]
+    Write { path: PathBuf, source: WriteError },
+    #[error("{}: {source}", path.display())]
+    Mesh { path: PathBuf, source: chordal_mesh::ImportError },
+    #[error("{}: {reason}", path.display())]
+    Output { path: PathBuf, reason: String },
+    #[error("{}: the file holds no face and no triangle{}", path.display(), but_holds(.loose))]
+    Empty { path: PathBuf, loose: usize },
+    #[error(
+        "{}: a tolerance of {tolerance} mm is below {floor:.1e} mm, the finest that double-precision coordinates of this size can keep",
+        path.display()
+    )]
+    BelowFloor { path: PathBuf, tolerance: f64, floor: f64 },
+    #[error("{}: nothing is written because of --strict: {}", path.display(), first_of(.undone))]
+    Strict { path: PathBuf, undone: Vec<String> },
+    #[error("{}: cancelled", path.display())]
+    Cancelled { path: PathBuf },
+    #[error("no pool of {threads} threads: {reason}")]
+    Threads { threads: usize, reason: String },
+}
+
+fn but_holds(loose: &usize) -> String {
+    match loose {
+        0 => String::new(),
+        1 => ", only a loose wire or point".into(),
+        n => format!(", only {n} loose wires and points"),
+    }
+}
+
+fn first_of(undone: &[String]) -> String {
+    match undone {
+        [] => "something was left undone".into(),
+        [one] => one.clone(),
+        [first, rest @ ..] => format!("{first} (and {} more)", rest.len()),
+    }
+}

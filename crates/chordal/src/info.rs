@@ -1,0 +1,205 @@
+//! What is in a CAD file, before anything is meshed.
+
+use crate::gaps::{Gap, gaps};
+use crate::names::{entity_id, face_kind, loose_kind};
+use crate::placement::{PartUse, part_uses};
+use crate::report::{FailedFace, LooseEntry, WarningEntry};
+use crate::tight_box::{edge_box, tight_box};
+use chordal_brep::{BodyKind, FaceGeometry, Model, NodeId, Part};
+use chordal_tessellate::Cancel;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The name and version of the schema of [`Info`].
+pub const INFO_SCHEMA: &str = "chordal-info/1";
+
+/// What is in a file. Lengths are millimetres; counts of the whole are as placed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Info {
+    pub schema: &'static str,
+    pub name: String,
+    /// Format and version as the file states them.
+    pub format: String,
+    /// The file's unit of length.
+    pub unit: String,
+    /// The tight axis-aligned box: its lowest and its highest corner; `null` where nothing is placed.
+    pub r#box: Option<[[f64; 3]; 2]>,
+    pub diagonal: f64,
+    /// As placed.
+    pub faces: usize,
+    /// As placed.
+    pub faces_by_kind: BTreeMap<&'static str, usize>,
+    /// Faces that could not be understood.
+    pub failed: Vec<FailedFace>,
+    pub max_gap: GapInfo,
+    pub parts: Vec<PartInfo>,
+    pub tree: Vec<NodeInfo>,
+    pub loose: Vec<LooseEntry>,
+    pub warnings: Vec<WarningEntry>,
+}
+
+/// The largest gaps, each with the entity it was found at; measured at samples.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct GapInfo {
+    pub vertex_to_curve: f64,
+    pub vertex_to_curve_at: String,
+    pub curve_to_surface: f64,
+    pub curve_to_surface_at: String,
+}
+
+/// One part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartInfo {
+    pub name: String,
+    pub id: String,
+    pub instances: usize,
+    pub solids: usize,
+    pub sheets: usize,
+    pub face_sets: usize,
+    pub shells: usize,
+    pub closed_shells: usize,
+    pub faces: usize,
+    pub edges: usize,
+    pub vertices: usize,
+    /// Triangles that are in the file already.
+    pub tessellated_triangles: usize,
+    /// The file's own statement of accuracy, in the part's units.
+    pub uncertainty: Option<f64>,
+    pub gaps: GapInfo,
+}
+
+/// One occurrence in the assembly tree.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NodeInfo {
+    pub name: String,
+    /// Index into `parts`.
+    pub part: Option<usize>,
+    pub children: Vec<NodeInfo>,
+}
+
+/// Looks at everything in a model.
+pub fn info(model: &Model) -> Info {
+    let uses = part_uses(model);
+    let whole = tight_box(model, &uses, edge_box(model, &uses), &Cancel::default());
+    let parts: Vec<PartInfo> =
+        model.parts.par_iter().zip(&uses).map(|(part, part_use)| part_info(part, part_use)).collect();
+    let mut faces_by_kind = BTreeMap::new();
+    for (part, part_use) in model.parts.iter().zip(&uses) {
+        for face in &part.faces {
+            *faces_by_kind.entry(face_kind(face)).or_insert(0) += part_use.instances;
+        }
+    }
+    Info {
+        schema: INFO_SCHEMA,
+        name: model.name.clone(),
+        format: model.schema.clone(),
+        unit: model.unit.clone(),
+        r#box: (!whole.is_empty()).then(|| [whole.min.to_array(), whole.max.to_array()]),
+        diagonal: whole.diagonal(),
+        faces: model.placed_faces(),
+        faces_by_kind,
+        failed: failed(model, &uses),
+        max_gap: largest(&parts),
+        parts,
+        tree: model.roots.iter().map(|&root| node_info(model, root)).collect(),
+        loose: loose(model),
+        warnings: warnings(model),
+    }
+}
+
+fn part_info(part: &Part, part_use: &PartUse) -> PartInfo {
+    let bodies = |kind: BodyKind| part.bodies.iter().filter(|b| b.kind == kind).count();
+    let gaps = gaps(part);
+    let length = |gap: Gap| gap.distance * part_use.scale;
+    PartInfo {
+        name: part.name.clone(),
+        id: entity_id(part.source),
+        instances: part_use.instances,
+        solids: bodies(BodyKind::Solid),
+        sheets: bodies(BodyKind::Sheet),
+        face_sets: bodies(BodyKind::FaceSet),
+        shells: part.shells.len(),
+        closed_shells: part.shells.iter().filter(|s| s.closed).count(),
+        faces: part.faces.len(),
+        edges: part.edges.len(),
+        vertices: part.vertices.len(),
+        tessellated_triangles: part.tessellated.iter().map(|t| t.triangles.len()).sum(),
+        uncertainty: part.uncertainty,
+        gaps: GapInfo {
+            vertex_to_curve: length(gaps.vertex_to_curve),
+            vertex_to_curve_at: entity_id(gaps.vertex_to_curve.source),
+            curve_to_surface: length(gaps.curve_to_surface),
+            curve_to_surface_at: entity_id(gaps.curve_to_surface.source),
+        },
+    }
+}
+
+fn largest(parts: &[PartInfo]) -> GapInfo {
+    let mut found = GapInfo::default();
+    for gaps in parts.iter().filter(|p| p.instances > 0).map(|p| &p.gaps) {
+        if gaps.vertex_to_curve > found.vertex_to_curve {
+            found.vertex_to_curve = gaps.vertex_to_curve;
+            found.vertex_to_curve_at.clone_from(&gaps.vertex_to_curve_at);
+        }
+        if gaps.curve_to_surface > found.curve_to_surface {
+            found.curve_to_surface = gaps.curve_to_surface;
+            found.curve_to_surface_at.clone_from(&gaps.curve_to_surface_at);
+        }
+    }
+    found
+}
+
+fn failed(model: &Model, uses: &[PartUse]) -> Vec<FailedFace> {
+    let mut failed = Vec::new();
+    for (part, part_use) in model.parts.iter().zip(uses) {
+        for face in &part.faces {
+            if let FaceGeometry::Failed(reason) = &face.geometry {
+                failed.push(FailedFace {
+                    id: entity_id(face.source),
+                    line: face.source.line,
+                    kind: face_kind(face).into(),
+                    name: face.name.clone(),
+                    part: part.name.clone(),
+                    instances: part_use.instances,
+                    reason: reason.clone(),
+                });
+            }
+        }
+    }
+    failed
+}
+
+/// A tree of ordinary depth; readers refuse cycles.
+fn node_info(model: &Model, id: NodeId) -> NodeInfo {
+    let node = &model.nodes[id.index()];
+    NodeInfo {
+        name: node.name.clone(),
+        part: node.part.map(|p| p.index()),
+        children: node.children.iter().map(|&child| node_info(model, child)).collect(),
+    }
+}
+
+/// Curves and points that belong to no face.
+pub(crate) fn loose(model: &Model) -> Vec<LooseEntry> {
+    let of_part = |part: &Part| -> Vec<LooseEntry> {
+        let entry = |item: &chordal_brep::LooseItem| LooseEntry {
+            id: entity_id(item.source),
+            kind: loose_kind(item.kind).into(),
+            name: item.name.clone(),
+            part: part.name.clone(),
+        };
+        part.loose.iter().map(entry).collect()
+    };
+    model.parts.iter().flat_map(of_part).collect()
+}
+
+/// What the reader had to say.
+pub(crate) fn warnings(model: &Model) -> Vec<WarningEntry> {
+    let entry = |w: &chordal_brep::Warning| WarningEntry {
+        id: entity_id(w.source),
+        line: w.source.line,
+        message: w.message.clone(),
+    };
+    model.warnings.iter().map(entry).collect()
+}

@@ -1,0 +1,220 @@
+//! The whole job, top to bottom:
+//!
+//! ```text
+//! read → resolve → heal parameters → discretise edges → size → place points → trim + triangulate → stitch → audit → write
+//!        └ here    └──────────────────── chordal_tessellate, once per part ─────────────────────┘
+//! ```
+
+use crate::account::{Ledger, account};
+use crate::auditing::audit_parts;
+use crate::progress::FaceCounter;
+use crate::resolve::{Resolved, resolve};
+use crate::scene::scene;
+use crate::{JobError, JobOptions, OnProgress, Progress, Report};
+use chordal_brep::Model;
+use chordal_mesh::{PartMesh, Scene};
+use chordal_tessellate::{Cancel, PartReport, tessellate_part};
+use chordal_write::{Format, WriteOptions, WriteSummary, write_scene};
+use rayon::prelude::*;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// One file to be meshed.
+#[derive(Clone)]
+pub struct Job {
+    pub input: PathBuf,
+    /// `None`: nothing is written.
+    pub output: Option<PathBuf>,
+    pub options: JobOptions,
+    pub cancel: Cancel,
+    pub on_progress: Option<OnProgress>,
+}
+
+impl fmt::Debug for Job {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Job")
+            .field("input", &self.input)
+            .field("output", &self.output)
+            .field("options", &self.options)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Job {
+    /// A job with default options that writes nothing.
+    pub fn new(input: impl Into<PathBuf>) -> Self {
+        Self {
+            input: input.into(),
+            output: None,
+            options: JobOptions::default(),
+            cancel: Cancel::default(),
+            on_progress: None,
+        }
+    }
+    pub fn with_output(mut self, output: impl Into<PathBuf>) -> Self {
+        self.output = Some(output.into());
+        self
+    }
+    pub fn with_options(mut self, options: JobOptions) -> Self {
+        self.options = options;
+        self
+    }
+    pub fn with_cancel(mut self, cancel: Cancel) -> Self {
+        self.cancel = cancel;
+        self
+    }
+    pub fn with_progress(mut self, on_progress: OnProgress) -> Self {
+        self.on_progress = Some(on_progress);
+        self
+    }
+    fn tell(&self, progress: Progress) {
+        if let Some(on_progress) = &self.on_progress {
+            on_progress(progress);
+        }
+    }
+    fn check_cancelled(&self) -> Result<(), JobError> {
+        if self.cancel.is_cancelled() { Err(JobError::Cancelled { path: self.input.clone() }) } else { Ok(()) }
+    }
+}
+
+/// What a job made.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    pub model: Model,
+    pub scene: Scene,
+    pub report: Report,
+}
+
+/// The mesh of one part, and what is known about it; lengths in the part's own units.
+#[derive(Clone, Debug, Default)]
+pub struct MeshedPart {
+    pub mesh: Arc<PartMesh>,
+    pub report: PartReport,
+}
+
+/// Runs the whole job.
+///
+/// # Errors
+/// Where nothing was written; the message is one sentence. A face that fails is no error: the report lists it.
+pub fn run(job: &Job) -> Result<Outcome, JobError> {
+    thread_pool(job.options.jobs)?.install(|| run_stages(job))
+}
+
+fn run_stages(job: &Job) -> Result<Outcome, JobError> {
+    let mut ledger = Ledger::start();
+
+    // 1. Read.
+    job.tell(Progress::Reading);
+    let format = output_format(job)?;
+    let model = ledger.time(|s| &mut s.read, || read_model(&job.input))?;
+    job.check_cancelled()?;
+
+    // 2. Resolve: what the options mean in the units of every part.
+    job.tell(Progress::Measuring);
+    let resolved =
+        ledger.time(|s| &mut s.resolve, || resolve(&model, &job.options, format, &job.input, &job.cancel))?;
+
+    // 3. Mesh every placed part once: heal, discretise edges, size, place, trim and triangulate, stitch.
+    let parts = mesh_parts(&model, &resolved, &job.cancel, &|progress| job.tell(progress));
+    job.check_cancelled()?;
+
+    // 4. Audit: recompute every promise from the model and the meshes.
+    job.tell(Progress::Auditing);
+    let audits = ledger.time(|s| &mut s.audit, || audit_parts(&model, &resolved, &parts));
+    job.check_cancelled()?;
+
+    // 5. Account: what was done, what is proven, what was left undone.
+    let mut report = account(job, &model, &resolved, &parts, &audits);
+    if job.options.strict && !report.clean {
+        return Err(JobError::Strict { path: job.input.clone(), undone: report.undone });
+    }
+
+    // 6. Write.
+    job.tell(Progress::Writing);
+    let scene = scene(&model, parts.iter().map(|p| p.mesh.clone()).collect(), format == Some(Format::Glb));
+    if let (Some(output), Some(format)) = (&job.output, format) {
+        let summary = ledger.time(|s| &mut s.write, || write(&scene, output, format, &job.options, resolved.tolerance))?;
+        report.add_output(output, format, &summary);
+    }
+    ledger.close(&mut report);
+    Ok(Outcome { model, scene, report })
+}
+
+/// Reads a model that holds something to mesh.
+///
+/// # Errors
+/// Where the file cannot be read, or holds neither a face nor a triangle.
+pub fn read_model(input: &Path) -> Result<Model, JobError> {
+    let model =
+        chordal_read::read_file(input).map_err(|source| JobError::Read { path: input.to_owned(), source })?;
+    if model.parts.iter().all(|p| p.faces.is_empty() && p.tessellated.is_empty()) {
+        let loose = model.parts.iter().map(|p| p.loose.len()).sum();
+        return Err(JobError::Empty { path: input.to_owned(), loose });
+    }
+    Ok(model)
+}
+
+/// Meshes every placed part once, in parallel; the result does not depend on the number of threads.
+///
+/// One per part of the model, in its order; a part that is never placed has an empty mesh.
+pub fn mesh_parts(
+    model: &Model,
+    resolved: &Resolved,
+    cancel: &Cancel,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Vec<MeshedPart> {
+    let counter = FaceCounter::start(model, resolved, tell);
+    model
+        .parts
+        .par_iter()
+        .zip(&resolved.parts)
+        .zip(&resolved.uses)
+        .map(|((part, options), part_use)| {
+            if part_use.instances == 0 {
+                return MeshedPart::default();
+            }
+            let of_part = counter.part();
+            let (mesh, report) = tessellate_part(part, options, cancel, &|done| of_part.done(done));
+            MeshedPart { mesh: Arc::new(mesh), report }
+        })
+        .collect()
+}
+
+/// A pool of `threads` threads, or of one per core.
+///
+/// # Errors
+/// Where the system refuses the threads.
+pub fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, JobError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .stack_size(16 << 20)
+        .build()
+        .map_err(|e| JobError::Threads { threads: threads.unwrap_or(0), reason: e.to_string() })
+}
+
+/// The format that the output will be in; `None` where nothing is written.
+fn output_format(job: &Job) -> Result<Option<Format>, JobError> {
+    let Some(output) = &job.output else { return Ok(job.options.format) };
+    let by_extension = || output.extension().and_then(|e| e.to_str()).and_then(Format::from_extension);
+    match job.options.format.or_else(by_extension) {
+        Some(format) => Ok(Some(format)),
+        None => Err(JobError::Output {
+            path: output.clone(),
+            reason: "the extension names no format that can be written (stl, ply, obj, glb, 3mf)".into(),
+        }),
+    }
+}
+
+fn write(
+    scene: &Scene,
+    output: &Path,
+    format: Format,
+    options: &JobOptions,
+    tolerance: f64,
+) -> Result<WriteSummary, JobError> {
+    let mut how = WriteOptions::new(format).with_edge_lines(options.edges).with_tolerance_mm(tolerance);
+    how.unit = options.unit;
+    how.up = options.up;
+    write_scene(scene, output, &how).map_err(|source| JobError::Write { path: output.to_owned(), source })
+}

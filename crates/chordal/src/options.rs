@@ -1,0 +1,127 @@
+//! What a job is asked for, in millimetres and radians.
+
+use crate::Tolerance;
+use chordal_tessellate::Bound;
+use chordal_write::{Format, Unit, UpAxis};
+use std::time::Duration;
+
+/// How interior points of faces are placed and connected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Strategy {
+    /// Grids and strips where the sizing metric allows them, points in the metric elsewhere.
+    #[default]
+    Default,
+}
+
+impl Strategy {
+    /// The name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Strategy::Default => "default",
+        }
+    }
+}
+
+/// What is asked of a whole job.
+///
+/// ```
+/// use chordal::{JobOptions, Tolerance};
+/// let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.05)).with_angle(None);
+/// assert!(!options.strict);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct JobOptions {
+    pub tolerance: Tolerance,
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians.
+    pub angle: Option<f64>,
+    /// Longest mesh edge, in millimetres.
+    pub max_edge: Option<f64>,
+    pub strategy: Strategy,
+    pub bound: Bound,
+    /// Threads; `None`: one per core. The result is the same bytes for any number.
+    pub jobs: Option<usize>,
+    /// Write nothing unless everything was done.
+    pub strict: bool,
+    /// Time after which a face is given up. A face that is given up depends on the machine: the only thing that does.
+    pub face_timeout: Option<Duration>,
+    /// The format of the output; `None`: by its extension.
+    pub format: Option<Format>,
+    /// The unit of the output; `None`: the format's own (metres in GLB, millimetres in the others).
+    pub unit: Option<Unit>,
+    /// The axis of the output that points up; `None`: the format's own (Y in GLB, as in the model in the others).
+    pub up: Option<UpAxis>,
+    /// Write the edges as lines too, where the format can.
+    pub edges: bool,
+}
+
+impl Default for JobOptions {
+    fn default() -> Self {
+        Self {
+            tolerance: Tolerance::default(),
+            angle: Some(20_f64.to_radians()),
+            max_edge: None,
+            strategy: Strategy::Default,
+            bound: Bound::Proven,
+            jobs: None,
+            strict: false,
+            face_timeout: Some(Duration::from_secs(60)),
+            format: None,
+            unit: None,
+            up: None,
+            edges: false,
+        }
+    }
+}
+
+impl JobOptions {
+    pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+    pub fn with_angle(mut self, radians: Option<f64>) -> Self {
+        self.angle = radians;
+        self
+    }
+    pub fn with_max_edge(mut self, mm: Option<f64>) -> Self {
+        self.max_edge = mm;
+        self
+    }
+    pub fn with_strategy(mut self, strategy: Strategy) -> Self {
+        self.strategy = strategy;
+        self
+    }
+    pub fn with_bound(mut self, bound: Bound) -> Self {
+        self.bound = bound;
+        self
+    }
+    pub fn with_jobs(mut self, jobs: Option<usize>) -> Self {
+        self.jobs = jobs;
+        self
+    }
+    pub fn with_strict(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
+    }
+    pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {
+        self.face_timeout = timeout;
+        self
+    }
+    pub fn with_format(mut self, format: Option<Format>) -> Self {
+        self.format = format;
+        self
+    }
+    pub fn with_unit(mut self, unit: Option<Unit>) -> Self {
+        self.unit = unit;
+        self
+    }
+    pub fn with_up(mut self, up: Option<UpAxis>) -> Self {
+        self.up = up;
+        self
+    }
+    pub fn with_edges(mut self, edges: bool) -> Self {
+        self.edges = edges;
+        self
+    }
+}

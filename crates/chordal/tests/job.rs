@@ -1,0 +1,63 @@
+//! The facade as a library user meets it.
+
+use chordal::{Cancel, Job, JobError, JobOptions, Progress, Tolerance};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+fn corpus(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step")
+}
+
+#[test]
+fn progress_runs_through_the_stages_and_counts_every_face() {
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let listener = heard.clone();
+    let job = Job::new(corpus("bracket"))
+        .with_progress(Arc::new(move |progress| listener.lock().expect("no panic").push(progress)));
+    chordal::run(&job).expect("a mesh");
+    let heard = heard.lock().expect("no panic");
+    assert_eq!(heard.first(), Some(&Progress::Reading));
+    assert!(heard.contains(&Progress::Meshing { done: 0, faces: 28 }));
+    assert!(heard.contains(&Progress::Meshing { done: 28, faces: 28 }), "{heard:?}");
+    assert_eq!(heard.last(), Some(&Progress::Writing));
+}
+
+#[test]
+fn a_cancelled_job_writes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.ply");
+    let cancel = Cancel::default();
+    let trigger = cancel.clone();
+    let job = Job::new(corpus("bracket")).with_output(&out).with_cancel(cancel).with_progress(Arc::new(move |progress| {
+        if matches!(progress, Progress::Meshing { .. }) {
+            trigger.cancel();
+        }
+    }));
+    assert!(matches!(chordal::run(&job), Err(JobError::Cancelled { .. })));
+    assert!(!out.exists());
+}
+
+/// A part placed three times as large must be meshed three times as finely in its own units.
+#[test]
+fn parts_get_their_tolerance_from_their_largest_placement() {
+    let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.3));
+    let outcome = chordal::run(&Job::new(corpus("mapped_items")).with_options(options)).expect("a mesh");
+    let part = outcome.report.parts.iter().find(|p| p.instances > 1).expect("a part that is placed often");
+    assert!((part.tolerance - 0.1).abs() < 1e-9, "{}", part.tolerance);
+    assert_eq!(outcome.report.faces.total, 32);
+    assert_eq!(outcome.report.options.tolerance, 0.3);
+}
+
+#[test]
+fn reports_survive_a_round_trip() {
+    let report = chordal::run(&Job::new(corpus("bracket"))).expect("a mesh").report;
+    let back: chordal::Report = serde_json::from_str(&report.to_json()).expect("JSON");
+    assert_eq!(report, back);
+}
+
+#[test]
+fn nothing_to_mesh_is_an_error_that_says_so() {
+    let error = chordal::run(&Job::new(corpus("wireframe_only"))).expect_err("no face");
+    let sentence = error.to_string();
+    assert!(sentence.contains("wireframe_only.step") && !sentence.contains('\n'), "{sentence}");
+}
