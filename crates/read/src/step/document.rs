@@ -178,12 +178,15 @@ impl<'a> Doc<'a> {
         self.open(ix).map(|args| args.leaves().into_iter().map(|(kw, _)| kw).collect()).unwrap_or_default()
     }
 
-    fn end(&self, ix: Ix) -> usize {
-        self.entries.get(ix as usize + 1).map_or(self.bytes.len(), |next| next.offset as usize)
+    /// The name as the file spells it; empty for a complex instance.
+    pub(crate) fn written_name(&self, ix: Ix) -> String {
+        let before = self.bytes[..self.entry(ix).offset as usize].trim_ascii_end();
+        let length = before.iter().rev().take_while(|b| b.is_ascii_alphanumeric() || **b == b'_').count();
+        String::from_utf8_lossy(&before[before.len() - length..]).to_ascii_uppercase()
     }
 
-    pub(crate) fn bytes(&self) -> &'a [u8] {
-        self.bytes
+    fn end(&self, ix: Ix) -> usize {
+        self.entries.get(ix as usize + 1).map_or(self.bytes.len(), |next| next.offset as usize)
     }
 }
 
