@@ -1,0 +1,23 @@
+//! Why nothing could be read at all.
+
+use chordal_brep::Source;
+
+/// A file that yields no model; one clear sentence each.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    #[error("cannot read {path}: {source}")]
+    Io { path: String, source: std::io::Error },
+    #[error("{name} is empty")]
+    Empty { name: String },
+    #[error("{name} is not a STEP file: it does not begin with ISO-10303-21")]
+    UnknownFormat { name: String },
+    #[error("{name} has no DATA section (the file ends at line {line})")]
+    NoData { name: String, line: u32 },
+    #[error("{name} has no entities in its DATA section (line {line})")]
+    NoEntities { name: String, line: u32 },
+    #[error("{name} holds no faces and nothing else that has a shape ({entities} entities read; first problem: {problem})")]
+    NothingInIt { name: String, entities: usize, problem: String },
+    #[error("{source_entity}: {message}")]
+    Entity { source_entity: Source, message: String },
+}

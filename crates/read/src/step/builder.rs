@@ -1,0 +1,139 @@
+//! A part under construction: what of it exists already, by entity.
+
+use super::document::{Bad, Doc, Ix, Res};
+use super::geometry::Geometry;
+use super::styles::Styles;
+use super::units::Units;
+use chordal_brep::{Color, EdgeId, Part, Source, Vertex, VertexId};
+use chordal_nurbs::{Curve2, DVec3, Range};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::Arc;
+
+/// A curve of an edge in the parameter space of the surface of entity `surface`.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfaceUse {
+    pub surface: Ix,
+    pub curve: Arc<Curve2>,
+    pub range: Range,
+}
+
+/// An edge that exists already.
+#[derive(Clone, Debug)]
+pub(crate) struct KnownEdge {
+    pub id: EdgeId,
+    /// The part's edge runs against the entity's start and end.
+    pub swapped: bool,
+    pub pcurves: Arc<[SurfaceUse]>,
+}
+
+/// A part under construction.
+#[derive(Debug)]
+pub(crate) struct Builder<'d> {
+    pub doc: &'d Doc<'d>,
+    pub geometry: Geometry<'d>,
+    pub styles: &'d Styles,
+    pub part: Part,
+    pub vertices: FxHashMap<Ix, VertexId>,
+    pub edges: FxHashMap<Ix, Res<KnownEdge>>,
+    /// Corners of polygons by the bits of their coordinates: files repeat the points of one corner.
+    corners: FxHashMap<[u64; 3], VertexId>,
+    /// Vertices found to be one: the second is replaced by the first when the part is finished.
+    same: Vec<(VertexId, VertexId)>,
+    /// Items taken already; one entity makes one body however often it is listed.
+    pub taken: FxHashSet<Ix>,
+}
+
+impl<'d> Builder<'d> {
+    pub(crate) fn new(doc: &'d Doc<'d>, styles: &'d Styles, units: Units, name: String, source: Source) -> Self {
+        let part = Part { name, uncertainty: units.uncertainty, source, ..Part::default() };
+        Self {
+            doc,
+            geometry: Geometry::new(doc, units),
+            styles,
+            part,
+            vertices: FxHashMap::default(),
+            edges: FxHashMap::default(),
+            corners: FxHashMap::default(),
+            same: Vec::new(),
+            taken: FxHashSet::default(),
+        }
+    }
+
+    /// The finished part.
+    pub(crate) fn finish(mut self) -> Part {
+        self.merge_vertices();
+        self.part
+    }
+
+    pub(crate) fn new_vertex(&mut self, point: DVec3, source: Source) -> VertexId {
+        let id = VertexId::from(self.part.vertices.len());
+        self.part.vertices.push(Vertex { point, source });
+        id
+    }
+
+    pub(crate) fn point_of(&self, vertex: VertexId) -> DVec3 {
+        self.part.vertices[vertex.index()].point
+    }
+
+    /// The vertex of a polygon's corner: one for all corners with the same coordinates.
+    pub(crate) fn corner(&mut self, point: DVec3, source: Source) -> VertexId {
+        // Adding zero makes -0 and 0 one.
+        let key = (point + DVec3::ZERO).to_array().map(f64::to_bits);
+        if let Some(&known) = self.corners.get(&key) {
+            return known;
+        }
+        let id = self.new_vertex(point, source);
+        self.corners.insert(key, id);
+        id
+    }
+
+    /// Notes that two vertices are one.
+    pub(crate) fn merge(&mut self, a: VertexId, b: VertexId) {
+        if a != b {
+            self.same.push((a.min(b), a.max(b)));
+        }
+    }
+
+    fn merge_vertices(&mut self) {
+        if self.same.is_empty() {
+            return;
+        }
+        let mut parent: Vec<u32> = (0..self.part.vertices.len() as u32).collect();
+        let root = |parent: &mut Vec<u32>, mut v: u32| {
+            while parent[v as usize] != v {
+                parent[v as usize] = parent[parent[v as usize] as usize];
+                v = parent[v as usize];
+            }
+            v
+        };
+        for &(a, b) in &self.same {
+            let (a, b) = (root(&mut parent, a.0), root(&mut parent, b.0));
+            parent[a.max(b) as usize] = a.min(b);
+        }
+        let mut renamed = |v: &mut VertexId| v.0 = root(&mut parent, v.0);
+        for edge in &mut self.part.edges {
+            renamed(&mut edge.start);
+            renamed(&mut edge.end);
+        }
+        for boundary in self.part.faces.iter_mut().flat_map(|face| &mut face.loops) {
+            match boundary {
+                chordal_brep::Loop::Vertex(v) => renamed(v),
+                chordal_brep::Loop::Polygon { vertices, .. } => vertices.iter_mut().for_each(&mut renamed),
+                chordal_brep::Loop::Edges { .. } => {}
+            }
+        }
+    }
+
+    /// Notes what is wrong with something that is left out.
+    pub(crate) fn warn_bad(&self, bad: &Bad) {
+        self.doc.warn_bad(bad);
+    }
+
+    pub(crate) fn color(&self, ix: Ix) -> Option<Color> {
+        self.styles.colors.get(&ix).copied()
+    }
+
+    pub(crate) fn layer(&self, ix: Ix) -> Option<String> {
+        self.styles.layers.get(&ix).cloned()
+    }
+}

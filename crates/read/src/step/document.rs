@@ -1,0 +1,224 @@
+//! The file as a table of entities, found by number, read on demand.
+
+use super::args::Args;
+use super::keyword::{Keywords, Kw};
+use super::scan::{Entry, Scan, scan};
+use chordal_brep::{Source, Warning};
+use rustc_hash::FxHashMap;
+use std::cell::{Cell, RefCell};
+
+/// More warnings than this are counted, not kept.
+pub(crate) const MAX_WARNINGS: usize = 10_000;
+
+/// The position of an entity in the table.
+pub(crate) type Ix = u32;
+
+/// Why an entity cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Bad(Box<(Source, String)>);
+
+impl Bad {
+    pub(crate) fn new(source: Source, message: impl Into<String>) -> Self {
+        Self(Box::new((source, message.into())))
+    }
+    pub(crate) fn source(&self) -> Source {
+        self.0.0
+    }
+    pub(crate) fn message(&self) -> &str {
+        &self.0.1
+    }
+}
+
+impl std::fmt::Display for Bad {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {}", self.0.0, self.0.1)
+    }
+}
+
+/// A result whose error names an entity and says what is wrong with it.
+pub(crate) type Res<T> = Result<T, Bad>;
+
+/// Entity numbers to positions: a plain table where numbers are dense, else a hash map.
+#[derive(Debug)]
+enum Ids {
+    Dense(Vec<Ix>),
+    Sparse(FxHashMap<u64, Ix>),
+}
+
+/// The entities of one file.
+#[derive(Debug)]
+pub(crate) struct Doc<'a> {
+    bytes: &'a [u8],
+    pub entries: Vec<Entry>,
+    ids: Ids,
+    keywords: Keywords,
+    pub data: Option<usize>,
+    pub lines: u32,
+    warnings: RefCell<Vec<Warning>>,
+    dropped_warnings: Cell<usize>,
+    /// Entities that may still be opened. It bounds the work on files whose references fan out for ever; an honest
+    /// file needs about one opening per reference, and a reference takes at least three bytes.
+    budget: Cell<u64>,
+}
+
+impl<'a> Doc<'a> {
+    /// Indexes a file.
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        let keywords = Keywords::new();
+        let Scan { mut entries, mut warnings, data, lines } = scan(bytes, &keywords);
+        entries.shrink_to_fit();
+        let ids = index(&entries, &mut warnings);
+        let budget = Cell::new(bytes.len() as u64 + 200_000);
+        let warnings = RefCell::new(warnings);
+        Self { bytes, entries, ids, keywords, data, lines, warnings, dropped_warnings: Cell::new(0), budget }
+    }
+
+    /// The entity with this number.
+    pub(crate) fn find(&self, id: u64) -> Option<Ix> {
+        match &self.ids {
+            Ids::Dense(table) => table.get(usize::try_from(id).ok()?).copied().filter(|&ix| ix != Ix::MAX),
+            Ids::Sparse(map) => map.get(&id).copied(),
+        }
+    }
+
+    pub(crate) fn keywords(&self) -> &Keywords {
+        &self.keywords
+    }
+
+    pub(crate) fn entry(&self, ix: Ix) -> &Entry {
+        &self.entries[ix as usize]
+    }
+
+    /// The keyword; of a complex instance [`Kw::Complex`].
+    pub(crate) fn kw(&self, ix: Ix) -> Kw {
+        self.entry(ix).kw
+    }
+
+    pub(crate) fn source(&self, ix: Ix) -> Source {
+        let entry = self.entry(ix);
+        Source { entity: entry.id, line: entry.line }
+    }
+
+    /// Positions of all entities of one keyword, in file order.
+    pub(crate) fn all(&self, wanted: impl Fn(Kw) -> bool) -> Vec<Ix> {
+        (0..).zip(&self.entries).filter(|(_, entry)| wanted(entry.kw)).map(|(ix, _)| ix).collect()
+    }
+
+    /// Notes a warning about an entity.
+    pub(crate) fn warn(&self, ix: Ix, message: impl Into<String>) {
+        self.warn_at(self.source(ix), message);
+    }
+
+    pub(crate) fn warn_at(&self, source: Source, message: impl Into<String>) {
+        let mut warnings = self.warnings.borrow_mut();
+        if warnings.len() < MAX_WARNINGS {
+            warnings.push(Warning { source, message: message.into() });
+        } else {
+            self.dropped_warnings.set(self.dropped_warnings.get() + 1);
+        }
+    }
+
+    /// Notes what is wrong with an entity that is left out.
+    pub(crate) fn warn_bad(&self, bad: &Bad) {
+        self.warn_at(bad.source(), bad.message());
+    }
+
+    /// All warnings so far.
+    pub(crate) fn take_warnings(&self) -> Vec<Warning> {
+        let mut warnings = self.warnings.take();
+        if self.dropped_warnings.get() > 0 {
+            let message = format!("{} further warnings are not listed", self.dropped_warnings.get());
+            warnings.push(Warning { source: Source::default(), message });
+        }
+        warnings
+    }
+
+    pub(crate) fn first_warning(&self) -> Option<Warning> {
+        self.warnings.borrow().first().cloned()
+    }
+
+    pub(crate) fn bad(&self, ix: Ix, message: impl std::fmt::Display) -> Bad {
+        Bad::new(self.source(ix), format!("{}: {message}", self.kw(ix).name()))
+    }
+
+    /// The attributes of a simple entity, or the leaves of a complex one.
+    pub(crate) fn open(&self, ix: Ix) -> Res<Args<'_>> {
+        let left = self.budget.get();
+        if left == 0 {
+            return Err(self.bad(ix, "too many references lead here; the file refers in circles"));
+        }
+        self.budget.set(left - 1);
+        let entry = self.entry(ix);
+        Ok(Args::new(self, ix, &self.bytes[entry.offset as usize..self.end(ix)]))
+    }
+
+    /// The attributes of `ix` as an entity of kind `kw`: its own where it is simple, those of the leaf of that name
+    /// where it is complex.
+    pub(crate) fn leaf(&self, ix: Ix, kw: Kw) -> Res<Args<'_>> {
+        match self.find_leaf(ix, kw)? {
+            Some(args) => Ok(args),
+            None => Err(self.bad(ix, format!("is not a {}", kw.name()))),
+        }
+    }
+
+    /// As [`Doc::leaf`]; `None` where there is no such leaf.
+    pub(crate) fn find_leaf(&self, ix: Ix, kw: Kw) -> Res<Option<Args<'_>>> {
+        let args = self.open(ix)?;
+        if self.kw(ix) != Kw::Complex {
+            return Ok((self.kw(ix) == kw).then_some(args));
+        }
+        Ok(args.leaves().into_iter().find(|(name, _)| *name == kw).map(|(_, args)| args))
+    }
+
+    /// Keywords of the leaves of a complex instance, or the one of a simple entity.
+    pub(crate) fn kinds(&self, ix: Ix) -> Vec<Kw> {
+        if self.kw(ix) != Kw::Complex {
+            return vec![self.kw(ix)];
+        }
+        self.open(ix).map(|args| args.leaves().into_iter().map(|(kw, _)| kw).collect()).unwrap_or_default()
+    }
+
+    /// The name as the file spells it; empty for a complex instance.
+    pub(crate) fn written_name(&self, ix: Ix) -> String {
+        let before = self.bytes[..self.entry(ix).offset as usize].trim_ascii_end();
+        let length = before.iter().rev().take_while(|b| b.is_ascii_alphanumeric() || **b == b'_').count();
+        String::from_utf8_lossy(&before[before.len() - length..]).to_ascii_uppercase()
+    }
+
+    fn end(&self, ix: Ix) -> usize {
+        self.entries.get(ix as usize + 1).map_or(self.bytes.len(), |next| next.offset as usize)
+    }
+}
+
+/// The table of entity numbers. Of several entities with one number the first is meant.
+fn index(entries: &[Entry], warnings: &mut Vec<Warning>) -> Ids {
+    let max = entries.iter().map(|entry| entry.id).max().unwrap_or(0);
+    let mut duplicate = |entry: &Entry, first: &Entry| {
+        if warnings.len() < MAX_WARNINGS {
+            let source = Source { entity: entry.id, line: entry.line };
+            let message = format!("the number was already given at line {}; the first is used", first.line);
+            warnings.push(Warning { source, message });
+        }
+    };
+    if max < entries.len() as u64 * 8 + 4096 {
+        let mut table = vec![Ix::MAX; max as usize + 1];
+        for (ix, entry) in (0..).zip(entries) {
+            let slot = &mut table[entry.id as usize];
+            match *slot {
+                Ix::MAX => *slot = ix,
+                first => duplicate(entry, &entries[first as usize]),
+            }
+        }
+        return Ids::Dense(table);
+    }
+    let mut map = FxHashMap::with_capacity_and_hasher(entries.len(), Default::default());
+    for (ix, entry) in (0..).zip(entries) {
+        match map.entry(entry.id) {
+            std::collections::hash_map::Entry::Vacant(slot) => {
+                slot.insert(ix);
+            }
+            std::collections::hash_map::Entry::Occupied(slot) => duplicate(entry, &entries[*slot.get() as usize]),
+        }
+    }
+    Ids::Sparse(map)
+}

@@ -1,0 +1,158 @@
+//! Vertices and edges: one edge for each EDGE_CURVE, one vertex for each VERTEX_POINT, whatever the faces that use them.
+
+use super::builder::{Builder, KnownEdge, SurfaceUse};
+use super::document::{Ix, Res};
+use super::keyword::Kw;
+use super::locate::{self, Located, locate};
+use chordal_brep::{Edge, EdgeId, VertexId};
+use chordal_nurbs::{Curve, Range};
+use std::sync::Arc;
+
+/// A gap between a vertex and its curve is spoken of where it exceeds this part of the edge's length.
+const GAP_WORTH_A_WORD: f64 = 0.1;
+
+impl Builder<'_> {
+    /// VERTEX_POINT.
+    pub(crate) fn vertex(&mut self, ix: Ix) -> Res<VertexId> {
+        if let Some(&known) = self.vertices.get(&ix) {
+            return Ok(known);
+        }
+        let point_ix = if self.doc.kw(ix) == Kw::CartesianPoint {
+            ix
+        } else {
+            let mut args = self.doc.leaf(ix, Kw::VertexPoint)?;
+            if self.doc.kw(ix) != Kw::Complex {
+                args.skip(1);
+            }
+            args.reference()?
+        };
+        let point = self.geometry.point(point_ix)?;
+        let id = self.new_vertex(point, self.doc.source(ix));
+        self.vertices.insert(ix, id);
+        Ok(id)
+    }
+
+    /// EDGE_CURVE or SUBEDGE, built once.
+    pub(crate) fn edge(&mut self, ix: Ix) -> Res<KnownEdge> {
+        if let Some(known) = self.edges.get(&ix) {
+            return known.clone();
+        }
+        let built = self.build_edge(ix);
+        self.edges.insert(ix, built.clone());
+        built
+    }
+
+    fn build_edge(&mut self, ix: Ix) -> Res<KnownEdge> {
+        let kind = if self.doc.kw(ix) == Kw::Subedge { Kw::Subedge } else { Kw::EdgeCurve };
+        let mut args = self.doc.leaf(ix, kind)?;
+        args.skip(1);
+        let start = self.vertex(args.reference()?)?;
+        let end = self.vertex(args.reference()?)?;
+        let (geometry, same_sense) = if kind == Kw::Subedge {
+            let parent = args.reference()?;
+            let mut args = self.doc.leaf(parent, Kw::EdgeCurve)?;
+            args.skip(3);
+            (args.reference(), args.logical(true))
+        } else {
+            (args.reference(), args.logical(true))
+        };
+        let curve = geometry.clone().and_then(|geometry| self.geometry.curve(geometry));
+        let (edge, located) = self.bounded_edge(ix, curve, start, end, same_sense);
+        let own_parameters = located.is_some();
+        let range = edge.range;
+        let angle = edge.curve.as_ref().map_or(1.0, |curve| self.geometry.parameter_unit(curve));
+        let id = EdgeId::from(self.part.edges.len());
+        self.part.edges.push(edge);
+        let file_range = own_parameters.then(|| Range::new(range.start / angle, range.end / angle));
+        let pcurves = geometry.map_or_else(|_| Vec::new(), |geometry| self.pcurves(geometry, file_range));
+        Ok(KnownEdge { id, swapped: located.is_some_and(|l| l.swapped), pcurves: pcurves.into() })
+    }
+
+    /// The edge between two vertices on a curve; a straight one where the curve cannot be used.
+    fn bounded_edge(
+        &mut self,
+        ix: Ix,
+        curve: Res<Curve>,
+        start: VertexId,
+        end: VertexId,
+        same_sense: bool,
+    ) -> (Edge, Option<Located>) {
+        let source = self.doc.source(ix);
+        let [p, q] = [start, end].map(|v| self.point_of(v));
+        let found = match &curve {
+            Ok(curve) => locate(curve, p, q, start == end, same_sense),
+            Err(_) => None,
+        };
+        if let (Ok(curve), Some(located)) = (curve.as_ref(), found) {
+            if located.contradicted {
+                self.doc.warn(ix, "the edge's sense contradicts its vertices; the vertices are believed");
+            }
+            let Range { start: t0, end: t1 } = located.range;
+            let (first, last) = if located.swapped { (end, start) } else { (start, end) };
+            let gap = [(t0, first), (t1, last)].map(|(t, v)| curve.point(t).distance(self.point_of(v)));
+            let gap = gap[0].max(gap[1]);
+            if gap.is_finite() {
+                self.speak_of_gap(ix, curve, located.range, gap);
+                let curve = Some(Arc::new(curve.clone()));
+                return (Edge { curve, range: located.range, start: first, end: last, source }, Some(located));
+            }
+        }
+        let why = match curve {
+            Err(bad) => bad.to_string(),
+            Ok(_) => "its curve has no length between its vertices".to_owned(),
+        };
+        if p == q {
+            if start != end || !why.starts_with("its curve") {
+                self.doc.warn(ix, format!("the edge is a single point: {why}"));
+            }
+            self.merge(start, end);
+            return (Edge { curve: None, range: Range::new(0.0, 1.0), start, end: start, source }, None);
+        }
+        self.doc.warn(ix, format!("the edge is taken for a straight line: {why}"));
+        let line = Curve::Line { origin: p, direction: q - p };
+        (Edge { curve: Some(Arc::new(line)), range: Range::new(0.0, 1.0), start, end, source }, None)
+    }
+
+    fn speak_of_gap(&self, ix: Ix, curve: &Curve, range: Range, gap: f64) {
+        // The chord bounds the length from below: most edges are done with it.
+        let chord = curve.point(range.start).distance(curve.point(range.end));
+        if gap <= GAP_WORTH_A_WORD * chord {
+            return;
+        }
+        let length = locate::length(curve, range);
+        if gap > GAP_WORTH_A_WORD * length {
+            self.doc.warn(ix, format!("a vertex lies {gap:.3e} off the edge's curve, whose length is {length:.3e}"));
+        }
+    }
+
+    /// The curves of an edge's geometry in parameter spaces, each over its own range or over the edge's.
+    fn pcurves(&mut self, geometry: Ix, edge_range: Option<Range>) -> Vec<SurfaceUse> {
+        let list = match self.doc.kw(geometry) {
+            Kw::SurfaceCurve | Kw::SeamCurve | Kw::IntersectionCurve | Kw::BoundedSurfaceCurve => {
+                let Ok(mut args) = self.doc.open(geometry) else { return Vec::new() };
+                args.skip(2);
+                args.references_or_warn()
+            }
+            Kw::Pcurve | Kw::BoundedPcurve => vec![geometry],
+            _ => return Vec::new(),
+        };
+        let mut found = Vec::new();
+        for ix in list {
+            // A surface instead of a pcurve only says that the edge lies on it.
+            if !matches!(self.doc.kw(ix), Kw::Pcurve | Kw::BoundedPcurve | Kw::Complex) {
+                continue;
+            }
+            match self.geometry.bounded_pcurve(ix) {
+                Ok((surface, curve, own)) => {
+                    let range = own.or(edge_range).unwrap_or_else(|| curve.domain());
+                    if range.is_finite() && range.start < range.end {
+                        found.push(SurfaceUse { surface, curve: Arc::new(curve), range });
+                    }
+                }
+                Err(bad) if self.doc.kw(ix) != Kw::Complex => self.warn_bad(&bad),
+                Err(_) => {}
+            }
+        }
+        found
+    }
+}

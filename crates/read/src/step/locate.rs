@@ -1,0 +1,208 @@
+//! Where on a curve a vertex lies, and the range between two vertices.
+
+use chordal_nurbs::{Curve, DVec3, Range};
+use std::f64::consts::TAU;
+
+/// A vertex this close to a free-form curve's end, relative to the curve's size, is taken for that end.
+const SNAP: f64 = 1e-6;
+
+/// The part of a curve that an edge is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Located {
+    pub range: Range,
+    /// The range runs from the edge's end vertex to its start vertex.
+    pub swapped: bool,
+    /// The parameters contradict the file's sense flag.
+    pub contradicted: bool,
+}
+
+/// The range of `curve` between two vertices; `None` where it has no length.
+///
+/// On an open curve the vertices decide which way it runs, on a closed one the file's `same_sense` does.
+pub(crate) fn locate(curve: &Curve, start: DVec3, end: DVec3, same_vertex: bool, same_sense: bool) -> Option<Located> {
+    match curve.period() {
+        Some(period) => on_closed(curve, period, start, end, same_vertex, same_sense),
+        None => on_open(curve, start, end, same_vertex, same_sense),
+    }
+}
+
+fn on_closed(curve: &Curve, period: f64, start: DVec3, end: DVec3, same_vertex: bool, same_sense: bool) -> Option<Located> {
+    let located = |range| Some(Located { range, swapped: !same_sense, contradicted: false });
+    let domain = curve.domain();
+    let (first, last) = if same_sense { (start, end) } else { (end, start) };
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * period;
+    let mut t0 = parameter_of(curve, first);
+    if near(t0, domain.end) || is_end(curve, domain.start, first) {
+        t0 = domain.start;
+    }
+    if same_vertex {
+        return located(Range::new(t0, t0 + period));
+    }
+    let mut t1 = parameter_of(curve, last);
+    if near(t1, domain.start) || is_end(curve, domain.start, last) {
+        t1 = domain.end;
+    }
+    if !t0.is_finite() || !t1.is_finite() {
+        return None;
+    }
+    while t1 <= t0 {
+        t1 += period;
+    }
+    while t1 > t0 + period * (1.0 + 1e-12) {
+        t1 -= period;
+    }
+    located(Range::new(t0, t1))
+}
+
+/// True where the vertex is the end `t` of a free-form curve's domain.
+fn is_end(curve: &Curve, t: f64, vertex: DVec3) -> bool {
+    match curve {
+        Curve::Circle { .. } | Curve::Ellipse { .. } => false,
+        _ => curve.point(t).distance(vertex) <= SNAP * size(curve),
+    }
+}
+
+fn on_open(curve: &Curve, start: DVec3, end: DVec3, same_vertex: bool, same_sense: bool) -> Option<Located> {
+    let domain = curve.domain();
+    let bounded = domain.is_finite();
+    if bounded && same_vertex {
+        // Its ends do not meet, yet it is said to be closed: all of it is meant.
+        return Some(Located { range: domain, swapped: !same_sense, contradicted: false });
+    }
+    let mut t = [f64::NAN; 2];
+    if bounded {
+        let snap = SNAP * size(curve);
+        let ends = [curve.point(domain.start), curve.point(domain.end)];
+        for (t, vertex) in t.iter_mut().zip([start, end]) {
+            let d = ends.map(|p| p.distance(vertex));
+            *t = if d[0] <= snap && d[0] <= d[1] {
+                domain.start
+            } else if d[1] <= snap {
+                domain.end
+            } else {
+                parameter_of(curve, vertex)
+            };
+        }
+    } else {
+        t = [parameter_of(curve, start), parameter_of(curve, end)];
+    }
+    let [t0, t1] = t;
+    if !t0.is_finite() || !t1.is_finite() || t0 == t1 {
+        return None;
+    }
+    let swapped = t0 > t1;
+    let range = if swapped { Range::new(t1, t0) } else { Range::new(t0, t1) };
+    Some(Located { range, swapped, contradicted: swapped == same_sense })
+}
+
+/// About how large a bounded curve is.
+fn size(curve: &Curve) -> f64 {
+    let spread = |points: &[DVec3]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+    match curve {
+        Curve::Nurbs(nurbs) => spread(nurbs.points()),
+        Curve::Polyline(points) => spread(points),
+        Curve::Circle { radius, .. } => *radius,
+        Curve::Ellipse { a, .. } => *a,
+        _ => length(curve, curve.domain()),
+    }
+}
+
+/// The length of a curve by a few chords: enough to judge whether something is large beside it.
+pub(crate) fn length(curve: &Curve, range: Range) -> f64 {
+    if !range.is_finite() {
+        return f64::INFINITY;
+    }
+    let at = |i: usize| curve.point(range.start + range.length() * i as f64 / 16.0);
+    (0..16).map(|i| at(i).distance(at(i + 1))).sum()
+}
+
+/// The parameter of the curve's point nearest to `p`; not a number where there is none.
+pub(crate) fn parameter_of(curve: &Curve, p: DVec3) -> f64 {
+    match curve {
+        Curve::Line { origin, direction } => (p - *origin).dot(*direction) / direction.length_squared(),
+        Curve::Circle { frame, .. } => {
+            let q = frame.local(p);
+            turn(q.y.atan2(q.x))
+        }
+        // On these two, y alone tells the parameter.
+        Curve::Parabola { frame, focal } => frame.local(p).y / (2.0 * focal),
+        Curve::Hyperbola { frame, b, .. } => (frame.local(p).y / b).asinh(),
+        Curve::Ellipse { frame, a, b } => {
+            let q = frame.local(p);
+            let guess = (q.y / b).atan2(q.x / a);
+            turn(refined(curve, p, guess - 0.5, guess + 0.5, guess))
+        }
+        Curve::Polyline(points) => on_polyline(points, p),
+        _ => nearest(curve, p),
+    }
+}
+
+/// The angle in `0..2π`.
+fn turn(angle: f64) -> f64 {
+    let turned = angle.rem_euclid(TAU);
+    if turned < TAU { turned } else { 0.0 }
+}
+
+fn on_polyline(points: &[DVec3], p: DVec3) -> f64 {
+    let mut best = (f64::INFINITY, 0.0);
+    for (i, pair) in points.windows(2).enumerate() {
+        let d = pair[1] - pair[0];
+        let s = if d == DVec3::ZERO { 0.0 } else { ((p - pair[0]).dot(d) / d.length_squared()).clamp(0.0, 1.0) };
+        let distance = pair[0].lerp(pair[1], s).distance(p);
+        if distance < best.0 {
+            best = (distance, i as f64 + s);
+        }
+    }
+    best.1
+}
+
+/// The nearest of many samples, refined.
+fn nearest(curve: &Curve, p: DVec3) -> f64 {
+    let domain = curve.domain();
+    if !domain.is_finite() {
+        return f64::NAN;
+    }
+    let pieces = match curve {
+        Curve::Nurbs(nurbs) => (nurbs.points().len() * 4).clamp(32, 20_000),
+        Curve::Composite(segments) => (segments.len() * 32).clamp(32, 20_000),
+        _ => 128,
+    };
+    let at = |i: usize| domain.start + domain.length() * i as f64 / pieces as f64;
+    let mut best = (f64::INFINITY, 0);
+    for i in 0..=pieces {
+        let d = curve.point(at(i)).distance_squared(p);
+        if d < best.0 {
+            best = (d, i);
+        }
+    }
+    let (from, to) = (at(best.1.saturating_sub(1)), at((best.1 + 1).min(pieces)));
+    refined(curve, p, from, to, at(best.1))
+}
+
+/// Newton's method on the derivative of the squared distance, kept inside `from..to`; bisection where it leaves.
+fn refined(curve: &Curve, p: DVec3, from: f64, to: f64, guess: f64) -> f64 {
+    let (mut low, mut high, mut t) = (from, to, guess);
+    for _ in 0..60 {
+        let jet = curve.jet(t);
+        let d = jet.p - p;
+        let slope = d.dot(jet.d1);
+        if slope > 0.0 { high = t } else { low = t }
+        let bend = jet.d1.length_squared() + d.dot(jet.d2);
+        let step = t - slope / bend;
+        let next = if bend > 0.0 && step >= low && step <= high { step } else { 0.5 * (low + high) };
+        let moved = (next - t).abs();
+        t = next;
+        if moved <= 1e-15 * (from.abs() + to.abs()) {
+            break;
+        }
+    }
+    let ends = [from, to].map(|end| curve.point(end).distance_squared(p));
+    let here = curve.point(t).distance_squared(p);
+    if ends[0] < here && ends[0] <= ends[1] {
+        from
+    } else if ends[1] < here {
+        to
+    } else {
+        t
+    }
+}
