@@ -86,7 +86,8 @@ fn nurbs_box(whole: &Curve, curve: &NurbsCurve3, range: Range) -> Box3 {
     found
 }
 
-/// Samples, each pair widened by the bound of the chord error between them where there is one.
+/// Samples, each pair widened by the bound of the chord error between them, or twice
+/// the sag where there is none.
 fn bounded_box(curve: &Curve, range: Range) -> Box3 {
     let mut stops = vec![range.start];
     stops.extend(curve.all_breaks(range));
@@ -95,9 +96,11 @@ fn bounded_box(curve: &Curve, range: Range) -> Box3 {
     for pair in stops.windows(2) {
         let at = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / PIECES as f64;
         for i in 0..PIECES {
-            let ends = Box3::from_points([curve.point(at(i)), curve.point(at(i + 1))]);
-            let error = curve.chord_error(at(i), at(i + 1));
-            found = found.union(if error.is_finite() { ends.inflated(error) } else { ends });
+            let (a, b) = (curve.point(at(i)), curve.point(at(i + 1)));
+            let proven = curve.chord_error(at(i), at(i + 1));
+            let sag = || curve.point(0.5 * (at(i) + at(i + 1))).distance((a + b) * 0.5);
+            let error = if proven.is_finite() { proven } else { 2.0 * sag() };
+            found = found.union(Box3::from_points([a, b]).inflated(error));
         }
     }
     found
