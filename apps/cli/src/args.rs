@@ -117,7 +117,8 @@ fn parse_jobs(text: &str) -> Result<usize, String> {
 }
 
 fn parse_seconds(text: &str) -> Result<TimeoutArg, String> {
-    let seconds: f64 = text.trim().trim_end_matches('s').parse().map_err(|_| "not a number of seconds".to_owned())?;
+    let seconds: f64 =
+        text.trim().trim_end_matches('s').parse().map_err(|_| "not a number of seconds".to_owned())?;
     match Duration::try_from_secs_f64(seconds) {
         Ok(time) => Ok(TimeoutArg((!time.is_zero()).then_some(time))),
         Err(_) => Err("not a number of seconds".into()),

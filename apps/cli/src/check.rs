@@ -18,7 +18,8 @@ pub fn run(args: &CheckArgs) -> Exit {
 
 fn text(found: &CheckReport) -> String {
     let yes = |is: bool| if is { "yes" } else { "no" };
-    let volume = found.volume.map_or_else(|| "none: not closed and oriented".into(), |v| format!("{v:.6} mm³"));
+    let volume =
+        found.volume.map_or_else(|| "none: not closed and oriented".into(), |v| format!("{v:.6} mm³"));
     format!(
         "triangles   {}\nvertices    {}\nclosed      {} ({} open edges)\noriented    {} ({} inconsistent edges)\n\
          degenerate  {}\nduplicate   {}\nvolume      {volume}\n",

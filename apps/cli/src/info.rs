@@ -33,7 +33,8 @@ fn text(info: &Info) -> String {
         let [x, y, z] = size.map(|s| format!("{s:.4}"));
         let _ = writeln!(out, "box       {x} × {y} × {z} mm, diagonal {:.6} mm", info.diagonal);
     }
-    let kinds: Vec<String> = info.faces_by_kind.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
+    let kinds: Vec<String> =
+        info.faces_by_kind.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
     let _ = writeln!(out, "faces     {}: {}", info.faces, kinds.join(", "));
     let gap = &info.max_gap;
     let _ = writeln!(
@@ -78,7 +79,8 @@ fn parts(out: &mut String, info: &Info) {
 /// Leaves of one part under one name are counted instead of repeated.
 fn tree(out: &mut String, info: &Info, node: &NodeInfo, depth: usize) {
     let line = |node: &NodeInfo| {
-        let part = node.part.and_then(|p| info.parts.get(p)).map_or_else(String::new, |p| format!(" [{}]", p.name));
+        let part =
+            node.part.and_then(|p| info.parts.get(p)).map_or_else(String::new, |p| format!(" [{}]", p.name));
         format!("{}{part}", if node.name.is_empty() { "(no name)" } else { &node.name })
     };
     if depth == 1 {

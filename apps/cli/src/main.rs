@@ -52,7 +52,8 @@ fn usage(error: &clap::Error) -> Exit {
         }
         _ => {
             let text = error.render().to_string();
-            let paragraph: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect();
+            let paragraph: Vec<&str> =
+                text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect();
             say(paragraph.join(" ").trim_start_matches("error: "));
             Exit::Nothing
         }

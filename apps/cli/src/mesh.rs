@@ -49,7 +49,11 @@ fn finish(args: &MeshArgs, outputs: Outputs, batch: &mut Batch) -> Exit {
         say(&sentence);
         return Exit::Nothing;
     }
-    let mut exit = if batch.failed.is_empty() && batch.reports.iter().all(|r| r.clean) { Exit::Clean } else { Exit::Undone };
+    let mut exit = if batch.failed.is_empty() && batch.reports.iter().all(|r| r.clean) {
+        Exit::Clean
+    } else {
+        Exit::Undone
+    };
     if let Err(sentence) = write_report(args, batch) {
         say(&sentence);
         exit = exit.max(Exit::Undone);
@@ -84,7 +88,9 @@ fn tell(args: &MeshArgs, report: &Report) {
             "{input}: tolerance {} = {tolerance:.6} mm, angle {angle}{max_edge}, {} bound, {} threads",
             options.tolerance_asked, options.bound, report.threads
         ));
-        let error = report.proven_error.map_or_else(|| "nothing proven".into(), |e| format!("proven error {e:.6} mm"));
+        let error = report
+            .proven_error
+            .map_or_else(|| "nothing proven".into(), |e| format!("proven error {e:.6} mm"));
         say(&format!(
             "{input}: {} faces, {} triangles, {error}, gap {:.2e} mm, {}, {:.2} s",
             report.faces.total,
@@ -94,11 +100,18 @@ fn tell(args: &MeshArgs, report: &Report) {
             report.seconds.total
         ));
         for warning in report.warnings.iter().take(WARNINGS_SHOWN) {
-            let id = if warning.id.is_empty() { String::new() } else { format!(" {} (line {}):", warning.id, warning.line) };
+            let id = if warning.id.is_empty() {
+                String::new()
+            } else {
+                format!(" {} (line {}):", warning.id, warning.line)
+            };
             say(&format!("{input}: warning:{id} {}", warning.message));
         }
         if report.warnings.len() > WARNINGS_SHOWN {
-            say(&format!("{input}: {} more warnings are in the report", report.warnings.len() - WARNINGS_SHOWN));
+            say(&format!(
+                "{input}: {} more warnings are in the report",
+                report.warnings.len() - WARNINGS_SHOWN
+            ));
         }
     }
     for sentence in &report.undone {
@@ -112,7 +125,9 @@ fn check_report_path(args: &MeshArgs) -> Result<(), String> {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
             Err(format!("{}: there is no such folder to write the report to", path.display()))
         }
-        _ if path.is_dir() => Err(format!("{}: the report needs a file name, this is a folder", path.display())),
+        _ if path.is_dir() => {
+            Err(format!("{}: the report needs a file name, this is a folder", path.display()))
+        }
         _ => Ok(()),
     }
 }

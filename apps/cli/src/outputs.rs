@@ -42,7 +42,8 @@ pub fn plan(args: &MeshArgs) -> Result<Outputs, String> {
     let failed = |e: std::io::Error| format!("{}: cannot write to the folder: {e}", out.display());
     std::fs::create_dir_all(out).map_err(failed)?;
     let mut taken = BTreeSet::new();
-    let names: Vec<String> = args.inputs.iter().map(|i| free_name(i, format.extension(), &mut taken)).collect();
+    let names: Vec<String> =
+        args.inputs.iter().map(|i| free_name(i, format.extension(), &mut taken)).collect();
     names.iter().try_for_each(|name| not_an_input(&out.join(name), &args.inputs))?;
     let staging = if args.strict && args.inputs.len() > 1 {
         let folder = tempfile::Builder::new().prefix(".chordal-").tempdir_in(out).map_err(failed)?;
@@ -92,7 +93,8 @@ impl Outputs {
 /// `stem.extension`, with a number where that is taken; names that differ only in case count as one.
 fn free_name(input: &Path, extension: &str, taken: &mut BTreeSet<String>) -> String {
     let stem = input.file_stem().map_or_else(|| "mesh".into(), |s| s.to_string_lossy().into_owned());
-    let numbered = |n: usize| if n == 1 { format!("{stem}.{extension}") } else { format!("{stem}-{n}.{extension}") };
+    let numbered =
+        |n: usize| if n == 1 { format!("{stem}.{extension}") } else { format!("{stem}-{n}.{extension}") };
     (1..)
         .map(numbered)
         .find(|name| taken.insert(name.to_lowercase()))
@@ -123,8 +125,10 @@ mod tests {
     #[test]
     fn names_do_not_collide() {
         let mut taken = BTreeSet::new();
-        let names: Vec<String> =
-            ["a/x.step", "b/X.stp", "x.p21", "y"].iter().map(|p| free_name(Path::new(p), "ply", &mut taken)).collect();
+        let names: Vec<String> = ["a/x.step", "b/X.stp", "x.p21", "y"]
+            .iter()
+            .map(|p| free_name(Path::new(p), "ply", &mut taken))
+            .collect();
         assert_eq!(names, ["x.ply", "X-2.ply", "x-3.ply", "y.ply"]);
     }
 }

@@ -14,7 +14,9 @@ fn help_and_version_are_data() {
     }
     assert!(run("--version", &[]).stdout.starts_with("chordal 0."));
     let help = run("mesh --help", &[]).stdout;
-    for word in ["0.1%", "20deg", "--sag", "linear-deflection", "angular-deflection", "a bare number is in mm"] {
+    for word in
+        ["0.1%", "20deg", "--sag", "linear-deflection", "angular-deflection", "a bare number is in mm"]
+    {
         assert!(help.contains(word), "{word}");
     }
     assert!(!run("--help", &[]).stdout.contains("bench"));
@@ -54,7 +56,8 @@ fn mistakes_are_one_sentence_and_exit_2() {
 fn a_tolerance_that_no_coordinate_can_hold_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out.ply");
-    let ran = run("mesh {} -o {} --tolerance 1e-18mm", &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
+    let ran =
+        run("mesh {} -o {} --tolerance 1e-18mm", &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
     assert!(ran.stderr.contains("double-precision"), "{}", ran.stderr);
     assert!(!out.exists());
 }
@@ -76,7 +79,11 @@ fn a_mesh_goes_to_its_file_and_talk_to_standard_error() {
         let out = folder.path().join(name);
         let ran = run("mesh {} -o {}", &[&model("bracket"), &out]).exits(&[0]);
         assert_eq!(ran.stdout, "");
-        assert!(ran.stderr.contains("tolerance 0.1 % = ") && ran.stderr.contains("angle 20"), "{}", ran.stderr);
+        assert!(
+            ran.stderr.contains("tolerance 0.1 % = ") && ran.stderr.contains("angle 20"),
+            "{}",
+            ran.stderr
+        );
         assert!(fs::metadata(&out).expect("a mesh").len() > 1000, "{name}");
         let ran = run("mesh {} -o {} --quiet", &[&model("bracket"), &out]).exits(&[0]);
         assert_eq!((ran.stdout.as_str(), ran.stderr.as_str()), ("", ""));
@@ -123,7 +130,10 @@ fn every_field_of_a_report_is_documented() {
     });
     for field in fields {
         let named = [format!("`{field}`"), format!("{field},"), format!("{field}}}"), format!("{{{field}")];
-        assert!(named.iter().any(|name| documented.contains(name)), "docs/report.md does not mention {field}");
+        assert!(
+            named.iter().any(|name| documented.contains(name)),
+            "docs/report.md does not mention {field}"
+        );
     }
 }
 
@@ -138,7 +148,9 @@ fn many_inputs_go_to_a_folder_without_collisions() {
     let slash = format!("{}/", out.display());
     let report = folder.path().join("r.json");
 
-    let ran = run("mesh {} {} -o {}", &[&model("bracket"), &twin, Path::new(&slash)]).exits(&[2]).says_one_sentence();
+    let ran = run("mesh {} {} -o {}", &[&model("bracket"), &twin, Path::new(&slash)])
+        .exits(&[2])
+        .says_one_sentence();
     assert!(ran.stderr.contains("--format"), "{}", ran.stderr);
 
     let line = "mesh {} {} {} -o {} --format ply --report {}";
@@ -174,7 +186,8 @@ fn strict_writes_nothing_where_anything_is_left_undone() {
     let folder = tempfile::tempdir().expect("a folder");
     let broken = corpus().join("bad/missing_entity.step");
     let (out, report) = (folder.path().join("out.ply"), folder.path().join("r.json"));
-    let ran = run("mesh {} -o {} --report {} --strict", &[&broken, &out, &report]).exits(&[2]).says_one_sentence();
+    let ran =
+        run("mesh {} -o {} --report {} --strict", &[&broken, &out, &report]).exits(&[2]).says_one_sentence();
     assert!(ran.stderr.contains("--strict"), "{}", ran.stderr);
     assert_eq!(files_in(folder.path()), [""; 0]);
 

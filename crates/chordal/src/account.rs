@@ -54,8 +54,9 @@ struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    fn faces(&self) -> impl Iterator<Item = (&Face, &FaceReport)> {
-        self.part.faces.iter().zip(&self.meshed.report.faces)
+    /// Every face with what was reported about it, if anything was.
+    fn faces(&self) -> impl Iterator<Item = (&Face, Option<&FaceReport>)> {
+        self.part.faces.iter().enumerate().map(|(i, face)| (face, self.meshed.report.faces.get(i)))
     }
 }
 
@@ -86,7 +87,15 @@ pub(crate) fn account(
     for (entry, options) in entries.iter().zip(&resolved.parts) {
         add_part(&mut report, entry, options.tolerance);
         add_shells(&mut report, entry);
-        entry.faces().for_each(|(face, of_face)| add_face(&mut report, entry, face, of_face));
+        if entry.part_use.instances == 0 {
+            report.warnings.push(never_placed(entry.part));
+            continue;
+        }
+        let missing =
+            FaceReport { failed: Some("nothing was reported about it".into()), ..FaceReport::default() };
+        entry
+            .faces()
+            .for_each(|(face, of_face)| add_face(&mut report, entry, face, of_face.unwrap_or(&missing)));
     }
     report.watertight = report.shells.watertight == report.shells.closed_in_file;
     report.proven_error = proven_error(&report, resolved.rounding);
@@ -158,6 +167,12 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
     }));
 }
 
+fn never_placed(part: &Part) -> WarningEntry {
+    let message =
+        format!("the part `{}` is never placed: its {} faces are not meshed", part.name, part.faces.len());
+    WarningEntry { id: entity_id(part.source), line: part.source.line, message }
+}
+
 fn add_shells(report: &mut Report, entry: &Entry<'_>) {
     let instances = entry.part_use.instances;
     let sound = |s: &AuditedShell| s.open_edges == 0 && s.inconsistent_edges == 0;
@@ -188,6 +203,9 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
         Some(reason) => report.faces.failed.push(failed(reason.clone())),
         None if of_face.zero_area => {
             report.faces.zero_area.push(failed("no area at the accuracy of the file".into()));
+        }
+        None if of_face.triangles == 0 => {
+            report.faces.failed.push(failed("no triangle came out of it".into()))
         }
         None => report.faces.meshed += instances,
     }
@@ -223,7 +241,8 @@ fn undone(report: &Report, bound: Bound) -> Vec<String> {
     let mut undone = Vec::new();
     let failed: usize = report.faces.failed.iter().map(|f| f.instances).sum();
     if let Some(first) = report.faces.failed.first() {
-        let id = if first.id.is_empty() { String::new() } else { format!(" {} (line {})", first.id, first.line) };
+        let id =
+            if first.id.is_empty() { String::new() } else { format!(" {} (line {})", first.id, first.line) };
         undone.push(format!(
             "{failed} of {} faces failed; the first is the {} face{id}: {}",
             report.faces.total, first.kind, first.reason
@@ -232,10 +251,13 @@ fn undone(report: &Report, bound: Bound) -> Vec<String> {
     let tolerance = report.options.tolerance;
     match report.proven_error {
         Some(error) if error > tolerance => {
-            undone.push(format!("the proven error is {error:.4e} mm, over the tolerance of {tolerance:.4e} mm"));
+            undone.push(format!(
+                "the proven error is {error:.4e} mm, over the tolerance of {tolerance:.4e} mm"
+            ));
         }
         None if bound == Bound::Proven => {
-            let unproven = report.face_list.iter().filter(|f| f.triangles > 0 && f.proven_error.is_none()).count();
+            let unproven =
+                report.face_list.iter().filter(|f| f.triangles > 0 && f.proven_error.is_none()).count();
             if unproven > 0 {
                 undone.push(format!("the error of {unproven} faces is not proven"));
             }
@@ -268,8 +290,10 @@ impl Report {
             bytes: summary.bytes,
             rounding: summary.rounding_mm,
         });
-        self.warnings.extend(
-            summary.warnings.iter().map(|w| WarningEntry { id: String::new(), line: 0, message: w.clone() }),
-        );
+        self.warnings.extend(summary.warnings.iter().map(|w| WarningEntry {
+            id: String::new(),
+            line: 0,
+            message: w.clone(),
+        }));
     }
 }

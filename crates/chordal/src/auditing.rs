@@ -32,9 +32,11 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &[MeshedPar
         .par_iter()
         .zip(parts)
         .zip(&resolved.uses)
-        .map(|((part, meshed), part_use)| {
-            if part_use.instances == 0 { AuditedPart::default() } else { audit(part, &meshed.mesh) }
-        })
+        .map(
+            |((part, meshed), part_use)| {
+                if part_use.instances == 0 { AuditedPart::default() } else { audit(part, &meshed.mesh) }
+            },
+        )
         .collect()
 }
 

@@ -15,7 +15,9 @@ impl EdgeCount {
         let mut sides: Vec<(u32, u32, bool)> = Vec::new();
         for [a, b, c] in triangles {
             let of_triangle = [(a, b), (b, c), (c, a)];
-            sides.extend(of_triangle.iter().filter(|(a, b)| a != b).map(|&(a, b)| (a.min(b), a.max(b), a < b)));
+            sides.extend(
+                of_triangle.iter().filter(|(a, b)| a != b).map(|&(a, b)| (a.min(b), a.max(b), a < b)),
+            );
         }
         sides.sort_unstable();
         let mut count = Self::default();

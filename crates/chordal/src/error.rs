@@ -23,6 +23,8 @@ pub enum JobError {
         path.display()
     )]
     BelowFloor { path: PathBuf, tolerance: f64, floor: f64 },
+    #[error("{}: {at}: a coordinate of {reach:.1e} is too large to be meant", path.display())]
+    TooLarge { path: PathBuf, at: String, reach: f64 },
     #[error("{}: nothing is written because of --strict: {}", path.display(), first_of(.undone))]
     Strict { path: PathBuf, undone: Vec<String> },
     #[error("{}: cancelled", path.display())]

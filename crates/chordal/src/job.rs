@@ -74,7 +74,11 @@ impl Job {
         }
     }
     fn check_cancelled(&self) -> Result<(), JobError> {
-        if self.cancel.is_cancelled() { Err(JobError::Cancelled { path: self.input.clone() }) } else { Ok(()) }
+        if self.cancel.is_cancelled() {
+            Err(JobError::Cancelled { path: self.input.clone() })
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -134,7 +138,8 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     job.tell(Progress::Writing);
     let scene = scene(&model, parts.iter().map(|p| p.mesh.clone()).collect(), format == Some(Format::Glb));
     if let (Some(output), Some(format)) = (&job.output, format) {
-        let summary = ledger.time(|s| &mut s.write, || write(&scene, output, format, &job.options, resolved.tolerance))?;
+        let summary = ledger
+            .time(|s| &mut s.write, || write(&scene, output, format, &job.options, resolved.tolerance))?;
         report.add_output(output, format, &summary);
     }
     ledger.close(&mut report);

@@ -55,11 +55,9 @@ pub fn parse_length(text: &str) -> Result<f64, QuantityError> {
     let (number, unit) = split(text)?;
     let factor = match unit {
         "" => 1.0,
-        _ => LENGTH_UNITS
-            .iter()
-            .find(|(name, _)| *name == unit)
-            .map(|&(_, factor)| factor)
-            .ok_or_else(|| QuantityError(format!("`{unit}` is no unit of length (use mm, um, cm, m, in or ft)")))?,
+        _ => LENGTH_UNITS.iter().find(|(name, _)| *name == unit).map(|&(_, factor)| factor).ok_or_else(
+            || QuantityError(format!("`{unit}` is no unit of length (use mm, um, cm, m, in or ft)")),
+        )?,
     };
     positive(number * factor, text)
 }
@@ -78,7 +76,11 @@ pub fn parse_angle(text: &str) -> Result<Option<f64>, QuantityError> {
     let radians = match unit {
         "" | "deg" | "°" => number.to_radians(),
         "rad" => number,
-        _ => return Err(QuantityError(format!("`{unit}` is no unit of angle (use deg or rad, or the word off)"))),
+        _ => {
+            return Err(QuantityError(format!(
+                "`{unit}` is no unit of angle (use deg or rad, or the word off)"
+            )));
+        }
     };
     let radians = positive(radians, text)?;
     Ok((radians < std::f64::consts::PI).then_some(radians))
@@ -115,7 +117,8 @@ fn split(text: &str) -> Result<(f64, &str), QuantityError> {
     let end = (0..bytes.len())
         .find(|&i| !(matches!(bytes[i], b'0'..=b'9' | b'.') || exponent(i) || sign(i)))
         .unwrap_or(bytes.len());
-    let number = text[..end].parse().map_err(|_| QuantityError(format!("`{text}` does not begin with a number")))?;
+    let number =
+        text[..end].parse().map_err(|_| QuantityError(format!("`{text}` does not begin with a number")))?;
     Ok((number, text[end..].trim()))
 }
 
@@ -133,11 +136,15 @@ mod tests {
 
     #[test]
     fn lengths_are_in_millimetres() {
-        for (text, mm) in [("0.1", 0.1), ("0.1mm", 0.1), (" 2 cm", 20.0), ("1e-2in", 0.254), ("50um", 0.05), ("1m", 1e3)] {
+        for (text, mm) in
+            [("0.1", 0.1), ("0.1mm", 0.1), (" 2 cm", 20.0), ("1e-2in", 0.254), ("50um", 0.05), ("1m", 1e3)]
+        {
             let found = parse_length(text).expect(text);
             assert!((found - mm).abs() < 1e-12 * mm, "{text}: {found}");
         }
-        for text in ["", "mm", "0", "-1mm", "1e400", "nan", "inf", "1 parsec", "1,5mm", "0.1mm mm", "1e", "--1", "5%"] {
+        for text in
+            ["", "mm", "0", "-1mm", "1e400", "nan", "inf", "1 parsec", "1,5mm", "0.1mm mm", "1e", "--1", "5%"]
+        {
             assert!(parse_length(text).is_err(), "{text}");
         }
     }

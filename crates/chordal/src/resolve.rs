@@ -14,6 +14,10 @@ const FLOOR_ULPS: f64 = 64.0;
 /// Roundings of a 64-bit coordinate on its way through placements of a tree of ordinary depth.
 const PLACEMENT_ULPS: f64 = 8.0;
 
+/// Coordinates in millimetres beyond this are a mistake of the file (it is 100 light years), and squares of lengths
+/// would overflow far above it.
+const LARGEST: f64 = 1e21;
+
 /// Everything that the options mean for this model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolved {
@@ -33,7 +37,7 @@ pub struct Resolved {
 /// Resolves `options` for `model`, to be written as `format`.
 ///
 /// # Errors
-/// Where the tolerance is below what the coordinates can hold.
+/// Where the tolerance is below what the coordinates can hold, or the coordinates are absurd.
 pub fn resolve(
     model: &Model,
     options: &JobOptions,
@@ -51,6 +55,9 @@ pub fn resolve(
         }
     };
     let largest = size.largest_coordinate();
+    if !(largest < LARGEST) {
+        return Err(too_large(model, input));
+    }
     let floor = FLOOR_ULPS * f64::EPSILON * largest;
     if !(tolerance > floor && tolerance.is_finite()) {
         return Err(JobError::BelowFloor { path: input.to_owned(), tolerance, floor });
@@ -69,6 +76,15 @@ pub fn resolve(
         })
         .collect();
     Ok(Resolved { tolerance, diagonal, rounding, uses, parts })
+}
+
+/// Names the vertex that lies farthest out.
+fn too_large(model: &Model, input: &Path) -> JobError {
+    let reach = |v: &chordal_brep::Vertex| v.point.abs().max_element();
+    let vertices = model.parts.iter().flat_map(|p| &p.vertices);
+    let farthest = vertices.max_by(|a, b| reach(a).total_cmp(&reach(b)));
+    let at = farthest.map_or_else(|| "the model".into(), |v| v.source.to_string());
+    JobError::TooLarge { path: input.to_owned(), at, reach: farthest.map_or(f64::INFINITY, reach) }
 }
 
 /// The distance in millimetres by which placing and writing may move a vertex of a model whose coordinates reach

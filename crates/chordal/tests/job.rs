@@ -28,11 +28,13 @@ fn a_cancelled_job_writes_nothing() {
     let out = folder.path().join("out.ply");
     let cancel = Cancel::default();
     let trigger = cancel.clone();
-    let job = Job::new(corpus("bracket")).with_output(&out).with_cancel(cancel).with_progress(Arc::new(move |progress| {
-        if matches!(progress, Progress::Meshing { .. }) {
-            trigger.cancel();
-        }
-    }));
+    let job = Job::new(corpus("bracket")).with_output(&out).with_cancel(cancel).with_progress(Arc::new(
+        move |progress| {
+            if matches!(progress, Progress::Meshing { .. }) {
+                trigger.cancel();
+            }
+        },
+    ));
     assert!(matches!(chordal::run(&job), Err(JobError::Cancelled { .. })));
     assert!(!out.exists());
 }

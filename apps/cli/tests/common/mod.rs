@@ -17,7 +17,12 @@ impl Ran {
     /// The exit code must be one of `codes`.
     #[track_caller]
     pub fn exits(self, codes: &[i32]) -> Self {
-        assert!(codes.contains(&self.code), "exit {} is none of {codes:?}; stderr:\n{}", self.code, self.stderr);
+        assert!(
+            codes.contains(&self.code),
+            "exit {} is none of {codes:?}; stderr:\n{}",
+            self.code,
+            self.stderr
+        );
         self
     }
 
@@ -55,7 +60,10 @@ pub fn run(line: &str, paths: &[&Path]) -> Ran {
 }
 
 pub fn corpus() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").canonicalize().expect("the corpus is in the repository")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../corpus")
+        .canonicalize()
+        .expect("the corpus is in the repository")
 }
 
 pub fn model(name: &str) -> PathBuf {
@@ -80,7 +88,11 @@ pub fn index(path: &Path) -> Vec<Row> {
     let names: Vec<&str> = lines.next().expect("a header").split('\t').collect();
     lines
         .map(|line| Row {
-            columns: names.iter().zip(line.split('\t')).map(|(n, v)| ((*n).to_owned(), v.to_owned())).collect(),
+            columns: names
+                .iter()
+                .zip(line.split('\t'))
+                .map(|(n, v)| ((*n).to_owned(), v.to_owned()))
+                .collect(),
         })
         .collect()
 }

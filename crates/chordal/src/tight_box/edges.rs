@@ -40,12 +40,14 @@ fn used(part: &Part) -> (Vec<DVec3>, Vec<&Edge>) {
             Loop::Polygon { vertices, .. } => vertices.iter().for_each(|v| vertex_used[v.index()] = true),
         }
     }
-    let edges: Vec<&Edge> = part.edges.iter().zip(&edge_used).filter(|(_, used)| **used).map(|(e, _)| e).collect();
+    let edges: Vec<&Edge> =
+        part.edges.iter().zip(&edge_used).filter(|(_, used)| **used).map(|(e, _)| e).collect();
     for edge in &edges {
         vertex_used[edge.start.index()] = true;
         vertex_used[edge.end.index()] = true;
     }
-    let vertices = part.vertices.iter().zip(vertex_used).filter(|(_, used)| *used).map(|(v, _)| v.point).collect();
+    let vertices =
+        part.vertices.iter().zip(vertex_used).filter(|(_, used)| *used).map(|(v, _)| v.point).collect();
     (vertices, edges)
 }
 

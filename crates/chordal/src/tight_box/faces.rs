@@ -67,7 +67,10 @@ fn reaches_out(face: &Face, found: &TightBox, part_use: &PartUse) -> bool {
 /// The size of the largest of the surfaces, in millimetres.
 fn outer_size(faces: &[&Face], part_use: &PartUse) -> f64 {
     let width = |surface: &Surface| {
-        DVec3::AXES.map(|axis| support(surface, axis) + support(surface, -axis)).into_iter().fold(0.0, f64::max)
+        DVec3::AXES
+            .map(|axis| support(surface, axis) + support(surface, -axis))
+            .into_iter()
+            .fold(0.0, f64::max)
     };
     let of_face = |face: &&Face| match &face.geometry {
         FaceGeometry::Surface(surface) => Some(width(surface)).filter(|w| w.is_finite()),
