@@ -76,7 +76,11 @@ impl Place {
 
 /// The unit vector along `v`, if it has a direction.
 pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
-    // Scaled first: the square of a short or long vector would under- or overflow.
+    let square = v.length_squared();
+    if (1e-200..1e200).contains(&square) {
+        return Some(v / square.sqrt());
+    }
+    // Scaled first: the square of a very short or long vector under- or overflows.
     let largest = v.abs().max_element();
     (largest > 0.0 && largest.is_finite()).then(|| (v / largest).normalize())
 }

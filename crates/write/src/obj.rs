@@ -165,20 +165,31 @@ impl Writer {
         out: &mut impl Write,
     ) -> Result<Vec<u64>, WriteError> {
         let mut numbers = Vec::new();
+        let mut of_corner: Vec<Option<u64>> = Vec::new();
         let mut known: FxHashMap<[u64; 3], u64> = FxHashMap::default();
         let mut text = Vec::new();
         for &triangle in patch.triangles.iter().take_while(|_| patch.has_normals()) {
             for corner in triangle {
-                let normal = patch.normal(corner).and_then(|n| item.place.normal(n)).unwrap_or_else(|| {
-                    let points = item.place.winding(patch.point_indices(triangle));
-                    triangle_normal(points.map(|p| placed[p as usize]))
-                });
-                let number = *known.entry(normal.to_array().map(f64::to_bits)).or_insert_with(|| {
-                    self.normals += 1;
-                    text.extend_from_slice(b"vn");
-                    push_point(&mut text, normal);
-                    text.push(b'\n');
-                    self.normals
+                let corner = corner as usize;
+                if corner >= of_corner.len() {
+                    of_corner.resize(corner + 1, None);
+                }
+                let number = of_corner[corner].unwrap_or_else(|| {
+                    let exact = patch.normal(corner as u32).and_then(|n| item.place.normal(n));
+                    let normal = exact.unwrap_or_else(|| {
+                        let points = item.place.winding(patch.point_indices(triangle));
+                        triangle_normal(points.map(|p| placed[p as usize]))
+                    });
+                    let number = *known.entry(normal.to_array().map(f64::to_bits)).or_insert_with(|| {
+                        self.normals += 1;
+                        text.extend_from_slice(b"vn");
+                        push_point(&mut text, normal);
+                        text.push(b'\n');
+                        self.normals
+                    });
+                    // At a pole without a normal each triangle has its own.
+                    of_corner[corner] = exact.map(|_| number);
+                    number
                 });
                 numbers.push(number);
             }

@@ -3,7 +3,7 @@
 //! Binary STL is one unnamed solid of 32-bit floats. ASCII STL has named solids and carries 64-bit coordinates here:
 //! the fewest digits that read back as the same number. Normals are those of the triangles as written.
 
-use crate::flat::{Item, Patch, Source, items};
+use crate::flat::{Item, Patch, Remap, Source, UNUSED, items};
 use crate::frame::triangle_normal;
 use crate::names::{Unique, one_line};
 use crate::number::push_point;
@@ -30,15 +30,11 @@ pub(crate) fn write_binary(
     for item in &items {
         for group in item.groups() {
             let Some(first) = group.first() else { continue };
-            let remap = crate::flat::Remap::new(&group);
+            let remap = Remap::new(&group);
             item.place_points(first.points, Some(&remap), &mut placed, options)?;
             rounded.clear();
             let used = placed.iter().zip(&remap.new_index);
-            rounded.extend(used.map(
-                |(&p, &i)| {
-                    if i == crate::flat::UNUSED { Vec3::ZERO } else { tally.round(p, mm) }
-                },
-            ));
+            rounded.extend(used.map(|(&p, &i)| if i == UNUSED { Vec3::ZERO } else { tally.round(p, mm) }));
             for patch in &group {
                 write_binary_patch(item, patch, &rounded, out, tally)?;
             }
@@ -74,9 +70,10 @@ fn write_binary_patch(
         tally.count_triangle(corners);
         let normal = triangle_normal(corners.map(Vec3::as_dvec3)).as_vec3();
         let mut record = [0_u8; 50];
-        let numbers = [normal, corners[0], corners[1], corners[2]].into_iter().flat_map(|v| v.to_array());
-        for (bytes, number) in record.chunks_exact_mut(4).zip(numbers) {
-            bytes.copy_from_slice(&number.to_le_bytes());
+        for (start, vector) in [(0, normal), (12, corners[0]), (24, corners[1]), (36, corners[2])] {
+            record[start..start + 4].copy_from_slice(&vector.x.to_le_bytes());
+            record[start + 4..start + 8].copy_from_slice(&vector.y.to_le_bytes());
+            record[start + 8..start + 12].copy_from_slice(&vector.z.to_le_bytes());
         }
         out.write_all(&record)?;
     }
@@ -175,19 +172,21 @@ fn write_solid(
     let name = one_line(name);
     writeln!(out, "solid {name}")?;
     let (mut placed, mut text) = (Vec::new(), Vec::new());
+    let mut lines = VertexLines::default();
     for item in items {
         for mut group in item.groups() {
             group.retain(&wanted);
             let Some(first) = group.first() else { continue };
-            let remap = crate::flat::Remap::new(&group);
+            let remap = Remap::new(&group);
             item.place_points(first.points, Some(&remap), &mut placed, options)?;
+            lines.fill(&placed, &remap);
             for patch in &group {
                 for &triangle in patch.triangles {
-                    let corners =
-                        item.place.winding(patch.point_indices(triangle)).map(|p| placed[p as usize]);
+                    let indices = item.place.winding(patch.point_indices(triangle));
+                    let corners = indices.map(|p| placed[p as usize]);
                     tally.count_triangle(corners);
                     text.clear();
-                    push_facet(&mut text, corners);
+                    push_facet(&mut text, triangle_normal(corners), indices.map(|p| lines.line(p)));
                     out.write_all(&text)?;
                 }
             }
@@ -197,16 +196,39 @@ fn write_solid(
     Ok(())
 }
 
-fn push_facet(text: &mut Vec<u8>, corners: [DVec3; 3]) {
+/// The line of each used point: most points are corners of six triangles, and digits are dear.
+#[derive(Debug, Default)]
+struct VertexLines {
+    text: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+impl VertexLines {
+    fn fill(&mut self, points: &[DVec3], remap: &Remap) {
+        self.text.clear();
+        self.ends.clear();
+        for (&p, &index) in points.iter().zip(&remap.new_index) {
+            if index != UNUSED {
+                self.text.extend_from_slice(b"  vertex");
+                push_point(&mut self.text, p);
+                self.text.push(b'\n');
+            }
+            self.ends.push(self.text.len());
+        }
+    }
+
+    fn line(&self, point: u32) -> &[u8] {
+        let point = point as usize;
+        let start = if point == 0 { 0 } else { self.ends[point - 1] };
+        &self.text[start..self.ends[point]]
+    }
+}
+
+fn push_facet(text: &mut Vec<u8>, normal: DVec3, lines: [&[u8]; 3]) {
     text.extend_from_slice(b"facet normal");
     // Readers use a normal for its direction only: six digits of it are worth their space, more are not.
-    let normal = triangle_normal(corners);
     push_point(text, (normal * 1e6).round() / 1e6);
     text.extend_from_slice(b"\n outer loop\n");
-    for corner in corners {
-        text.extend_from_slice(b"  vertex");
-        push_point(text, corner);
-        text.push(b'\n');
-    }
+    lines.into_iter().for_each(|line| text.extend_from_slice(line));
     text.extend_from_slice(b" endloop\nendfacet\n");
 }

@@ -147,11 +147,7 @@ impl<'a> Meshes<'a> {
         tally: &mut Tally,
     ) -> Primitive {
         let mut builder = Builder::new(points);
-        for patch in patches {
-            for &triangle in patch.triangles {
-                builder.triangle(patch, triangle, self.frame, tally);
-            }
-        }
+        patches.iter().for_each(|patch| builder.patch(patch, self.frame, tally));
         self.vertices += builder.vertices.len() as u64;
         let attributes = Attributes {
             position: self.data.vectors(&builder.vertices, true),
@@ -291,6 +287,8 @@ struct Builder<'p> {
     /// Per point its first vertex, per vertex the next one of the same point.
     first: Vec<u32>,
     next: Vec<u32>,
+    /// Per corner of the present patch its vertex.
+    of_corner: Vec<u32>,
     indices: Vec<u32>,
     face_ids: Vec<u32>,
     with_normals: bool,
@@ -304,31 +302,47 @@ impl<'p> Builder<'p> {
             normals: Vec::new(),
             first: vec![UNUSED; points.exact.len()],
             next: Vec::new(),
+            of_corner: Vec::new(),
             indices: Vec::new(),
             face_ids: Vec::new(),
             with_normals: true,
         }
     }
 
-    fn triangle(&mut self, patch: &Patch<'_>, triangle: [u32; 3], frame: Frame, tally: &mut Tally) {
-        let points = patch.point_indices(triangle);
-        tally.count_triangle(points.map(|p| self.points.rounded[p as usize]));
+    fn patch(&mut self, patch: &Patch<'_>, frame: Frame, tally: &mut Tally) {
         self.with_normals &= patch.has_normals();
-        for (corner, point) in triangle.into_iter().zip(points) {
-            let normal = if self.with_normals { self.normal(patch, corner, points, frame) } else { Vec3::Z };
-            let vertex = self.vertex(point, normal);
-            self.indices.push(vertex);
-        }
-        if let Source::Face { face, .. } = patch.source {
-            self.face_ids.push(face);
+        self.of_corner.clear();
+        for &triangle in patch.triangles {
+            let points = patch.point_indices(triangle);
+            tally.count_triangle(points.map(|p| self.points.rounded[p as usize]));
+            for (corner, point) in triangle.into_iter().zip(points) {
+                let vertex = self.corner(patch, corner, point, points, frame);
+                self.indices.push(vertex);
+            }
+            if let Source::Face { face, .. } = patch.source {
+                self.face_ids.push(face);
+            }
         }
     }
 
-    /// The exact normal in 32 bits; the triangle's where a pole has none, as glTF allows no zero normal.
-    fn normal(&self, patch: &Patch<'_>, corner: u32, points: [u32; 3], frame: Frame) -> Vec3 {
-        let exact = patch.normal(corner).and_then(|n| unit(frame.rotation * n));
-        let normal = exact.unwrap_or_else(|| triangle_normal(points.map(|p| self.points.exact[p as usize])));
-        if normal == DVec3::ZERO { Vec3::Z } else { normal.as_vec3() }
+    /// The vertex of a corner; a pole without a normal takes that of each triangle, as glTF allows no zero normal.
+    fn corner(&mut self, patch: &Patch<'_>, corner: u32, point: u32, points: [u32; 3], frame: Frame) -> u32 {
+        let index = corner as usize;
+        if index >= self.of_corner.len() {
+            self.of_corner.resize(index + 1, UNUSED);
+        }
+        if self.of_corner[index] != UNUSED {
+            return self.of_corner[index];
+        }
+        if !self.with_normals {
+            return self.vertex(point, Vec3::Z);
+        }
+        if let Some(normal) = patch.normal(corner).and_then(|n| unit(frame.rotation * n)) {
+            self.of_corner[index] = self.vertex(point, normal.as_vec3());
+            return self.of_corner[index];
+        }
+        let normal = triangle_normal(points.map(|p| self.points.exact[p as usize]));
+        self.vertex(point, if normal == DVec3::ZERO { Vec3::Z } else { normal.as_vec3() })
     }
 
     fn vertex(&mut self, point: u32, normal: Vec3) -> u32 {
