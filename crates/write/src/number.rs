@@ -25,6 +25,7 @@ pub(crate) fn push_point(text: &mut Vec<u8>, p: glam::DVec3) {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use proptest::prelude::*;

@@ -118,10 +118,11 @@ impl<'a> Mesh<'a> {
 
     /// Whether every edge has exactly one triangle on each side: 3MF asks that of objects of type `model`.
     fn is_closed(&self) -> bool {
-        let directed = |&([a, b, c], _): &([u32; 3], _)| [[a, b], [b, c], [c, a]];
-        let mut edges: Vec<[u32; 2]> = self.triangles.iter().flat_map(directed).collect();
+        let key = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
+        let directed = |&([a, b, c], _): &([u32; 3], _)| [key(a, b), key(b, c), key(c, a)];
+        let mut edges: Vec<u64> = self.triangles.iter().flat_map(directed).collect();
         edges.sort_unstable();
         let twice = edges.windows(2).any(|pair| pair[0] == pair[1]);
-        !twice && edges.iter().all(|&[a, b]| edges.binary_search(&[b, a]).is_ok())
+        !twice && edges.iter().all(|&edge| edges.binary_search(&edge.rotate_left(32)).is_ok())
     }
 }
