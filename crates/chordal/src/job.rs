@@ -179,7 +179,7 @@ pub fn mesh_parts(
             if part_use.instances == 0 {
                 return MeshedPart::default();
             }
-            let of_part = counter.part();
+            let of_part = counter.part(part);
             let (mesh, report) = tessellate_part(part, options, cancel, &|done| of_part.done(done));
             MeshedPart { mesh: Arc::new(mesh), report }
         })

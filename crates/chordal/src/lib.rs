@@ -1,13 +1,18 @@
 //! CAD geometry in, proven watertight meshes out: the one crate that a user adds.
 //!
-//! ```no_run
+//! ```
 //! use chordal::{Job, JobOptions, Tolerance};
 //!
 //! let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.05));
-//! let outcome = chordal::run(&Job::new("part.step").with_output("part.glb").with_options(options))?;
-//! println!("{} triangles within {:?} mm", outcome.report.triangles, outcome.report.proven_error);
+//! let report = chordal::run(&Job::new("../../corpus/bracket.step").with_options(options))?.report;
+//! assert!(report.clean && report.watertight);
+//! assert!(report.proven_error.is_some_and(|error| error <= 0.05));
+//! println!("{} triangles for {} faces", report.triangles, report.faces.total);
 //! # Ok::<(), chordal::JobError>(())
 //! ```
+//!
+//! `Job::with_output` writes the mesh; `Outcome::scene` holds it in memory. The parts of the pipeline are re-exported
+//! and can be used alone: [`nurbs`], [`brep`], [`read`], [`mod@tessellate`], [`audit`], [`mesh`], [`write`](mod@write).
 
 mod account;
 mod analytic;

@@ -1,7 +1,7 @@
 //! How far a job is.
 
 use crate::resolve::Resolved;
-use chordal_brep::Model;
+use chordal_brep::{Model, Part};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -34,6 +34,7 @@ pub(crate) struct FaceCounter<'a> {
 /// The faces of one part that are done.
 pub(crate) struct PartCounter<'a> {
     of_part: AtomicUsize,
+    faces: usize,
     all: &'a FaceCounter<'a>,
 }
 
@@ -44,19 +45,21 @@ impl<'a> FaceCounter<'a> {
         tell(Progress::Meshing { done: 0, faces });
         Self { done: AtomicUsize::new(0), faces, tell }
     }
-    pub fn part(&'a self) -> PartCounter<'a> {
-        PartCounter { of_part: AtomicUsize::new(0), all: self }
+    pub fn part(&'a self, part: &Part) -> PartCounter<'a> {
+        PartCounter { of_part: AtomicUsize::new(0), faces: part.faces.len(), all: self }
     }
 }
 
 impl PartCounter<'_> {
-    /// `done` faces of this part are finished by now; calls may arrive out of order.
+    /// `done` faces of this part are finished by now, those that ran again counted again; calls may arrive out of
+    /// order.
     pub fn done(&self, done: usize) {
+        let done = done.min(self.faces);
         let before = self.of_part.fetch_max(done, Ordering::Relaxed);
         let more = done.saturating_sub(before);
         if more > 0 {
             let done = self.all.done.fetch_add(more, Ordering::Relaxed) + more;
-            (self.all.tell)(Progress::Meshing { done: done.min(self.all.faces), faces: self.all.faces });
+            (self.all.tell)(Progress::Meshing { done, faces: self.all.faces });
         }
     }
 }

@@ -28,7 +28,8 @@ pub(super) fn include(found: &mut TightBox, part: &Part, part_use: &PartUse, can
         ..Part::default()
     };
     // A model without edges (a full sphere) has no size yet: its surfaces have.
-    let size = if found.is_empty() { outer_size(&faces, part_use) } else { found.diagonal() };
+    let outer = outer_size(&faces, part_use);
+    let size = if found.diagonal() > 1e-6 * outer { found.diagonal() } else { outer };
     let tolerance = COARSE * size / part_use.scale;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return;
