@@ -133,7 +133,14 @@ impl<'d> Args<'d> {
                 },
                 b'(' => depth += 1,
                 b')' if depth == 0 => break,
-                b')' => depth -= 1,
+                b')' => {
+                    depth -= 1;
+                    if depth == 0 {
+                        // A list is one value; in a complex instance the next leaf follows without a comma.
+                        self.at += 1;
+                        break;
+                    }
+                }
                 b',' if depth == 0 => break,
                 b';' => break,
                 _ => {}

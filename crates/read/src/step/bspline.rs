@@ -1,7 +1,5 @@
 //! B-spline data of STEP, for curves and surfaces alike: knot vectors from multiplicities, or from the form's name.
 
-use chordal_nurbs::Vector;
-
 /// How an entity states its knots.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Knots {
@@ -93,13 +91,6 @@ impl KnotVector {
         points.drain(..self.skip_first);
         points
     }
-}
-
-/// The point of a clamped spline's end without evaluating it.
-pub(crate) fn clamped_ends<V: Vector>(degree: usize, knots: &[f64], points: &[V]) -> Option<(V, V)> {
-    let n = points.len();
-    let clamped = knots.get(1) == knots.get(degree) && knots.get(n) == knots.get(n + degree - 1);
-    clamped.then(|| (points[0], points[n - 1]))
 }
 
 #[cfg(test)]

@@ -127,13 +127,8 @@ pub(crate) fn parameter_of(curve: &Curve, p: DVec3) -> f64 {
         // On these two, y alone tells the parameter.
         Curve::Parabola { frame, focal } => frame.local(p).y / (2.0 * focal),
         Curve::Hyperbola { frame, b, .. } => (frame.local(p).y / b).asinh(),
-        Curve::Ellipse { frame, a, b } => {
-            let q = frame.local(p);
-            let guess = (q.y / b).atan2(q.x / a);
-            turn(refined(curve, p, guess - 0.5, guess + 0.5, guess))
-        }
-        Curve::Polyline(points) => on_polyline(points, p),
-        _ => nearest(curve, p),
+        Curve::Ellipse { .. } => turn(curve.invert(p, None)),
+        _ => curve.invert(p, None),
     }
 }
 
@@ -141,68 +136,4 @@ pub(crate) fn parameter_of(curve: &Curve, p: DVec3) -> f64 {
 fn turn(angle: f64) -> f64 {
     let turned = angle.rem_euclid(TAU);
     if turned < TAU { turned } else { 0.0 }
-}
-
-fn on_polyline(points: &[DVec3], p: DVec3) -> f64 {
-    let mut best = (f64::INFINITY, 0.0);
-    for (i, pair) in points.windows(2).enumerate() {
-        let d = pair[1] - pair[0];
-        let s = if d == DVec3::ZERO { 0.0 } else { ((p - pair[0]).dot(d) / d.length_squared()).clamp(0.0, 1.0) };
-        let distance = pair[0].lerp(pair[1], s).distance(p);
-        if distance < best.0 {
-            best = (distance, i as f64 + s);
-        }
-    }
-    best.1
-}
-
-/// The nearest of many samples, refined.
-fn nearest(curve: &Curve, p: DVec3) -> f64 {
-    let domain = curve.domain();
-    if !domain.is_finite() {
-        return f64::NAN;
-    }
-    let pieces = match curve {
-        Curve::Nurbs(nurbs) => (nurbs.points().len() * 4).clamp(32, 20_000),
-        Curve::Composite(segments) => (segments.len() * 32).clamp(32, 20_000),
-        _ => 128,
-    };
-    let at = |i: usize| domain.start + domain.length() * i as f64 / pieces as f64;
-    let mut best = (f64::INFINITY, 0);
-    for i in 0..=pieces {
-        let d = curve.point(at(i)).distance_squared(p);
-        if d < best.0 {
-            best = (d, i);
-        }
-    }
-    let (from, to) = (at(best.1.saturating_sub(1)), at((best.1 + 1).min(pieces)));
-    refined(curve, p, from, to, at(best.1))
-}
-
-/// Newton's method on the derivative of the squared distance, kept inside `from..to`; bisection where it leaves.
-fn refined(curve: &Curve, p: DVec3, from: f64, to: f64, guess: f64) -> f64 {
-    let (mut low, mut high, mut t) = (from, to, guess);
-    for _ in 0..60 {
-        let jet = curve.jet(t);
-        let d = jet.p - p;
-        let slope = d.dot(jet.d1);
-        if slope > 0.0 { high = t } else { low = t }
-        let bend = jet.d1.length_squared() + d.dot(jet.d2);
-        let step = t - slope / bend;
-        let next = if bend > 0.0 && step >= low && step <= high { step } else { 0.5 * (low + high) };
-        let moved = (next - t).abs();
-        t = next;
-        if moved <= 1e-15 * (from.abs() + to.abs()) {
-            break;
-        }
-    }
-    let ends = [from, to].map(|end| curve.point(end).distance_squared(p));
-    let here = curve.point(t).distance_squared(p);
-    if ends[0] < here && ends[0] <= ends[1] {
-        from
-    } else if ends[1] < here {
-        to
-    } else {
-        t
-    }
 }

@@ -1,0 +1,61 @@
+//! Reads files and prints what they hold: `cargo run --release --example read_models -- FILE…`
+
+use chordal_brep::FaceGeometry;
+use std::time::Instant;
+
+fn main() {
+    for path in std::env::args().skip(1) {
+        let bytes = match std::fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                eprintln!("{path}: {error}");
+                continue;
+            }
+        };
+        let start = Instant::now();
+        let model = match chordal_read::read_bytes(&bytes, &path) {
+            Ok(model) => model,
+            Err(error) => {
+                println!("{path}: {error}");
+                continue;
+            }
+        };
+        let seconds = start.elapsed().as_secs_f64();
+        let failed: Vec<_> = model
+            .parts
+            .iter()
+            .flat_map(|part| &part.faces)
+            .filter_map(|face| match &face.geometry {
+                FaceGeometry::Failed(reason) => Some(reason),
+                FaceGeometry::Surface(_) => None,
+            })
+            .collect();
+        println!(
+            "{path}: {} | {} | parts {} nodes {} roots {} | placed faces {} failed {} | warnings {} | {:.1} ms, {:.0} MB/s | peak {} MB",
+            model.schema,
+            model.unit,
+            model.parts.len(),
+            model.nodes.len(),
+            model.roots.len(),
+            model.placed_faces(),
+            failed.len(),
+            model.warnings.len(),
+            seconds * 1e3,
+            bytes.len() as f64 / 1e6 / seconds,
+            peak_megabytes(),
+        );
+        for reason in failed.iter().take(5) {
+            println!("    failed: {reason}");
+        }
+        for warning in model.warnings.iter().take(8) {
+            println!("    {warning}");
+        }
+    }
+}
+
+/// The largest memory that the process ever held, from the system's accounts where they exist.
+fn peak_megabytes() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok()).map_or(0, |kb| kb / 1024)
+}
