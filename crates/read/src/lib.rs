@@ -17,7 +17,8 @@ pub use error::ReadError;
 /// [`ReadError`] where the file cannot be opened, is of no known format or holds no geometry.
 pub fn read_file(path: impl AsRef<Path>) -> Result<Model, ReadError> {
     let path = path.as_ref();
-    let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.display().to_string(), source })?;
+    let bytes =
+        std::fs::read(path).map_err(|source| ReadError::Io { path: path.display().to_string(), source })?;
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     read_bytes(&bytes, &name)
 }

@@ -73,10 +73,12 @@ impl<'d> Args<'d> {
             let Some(b) = self.byte() else { return Kind::End };
             match b {
                 b' ' | b'\n' | b'\r' | b'\t' | b',' | 0x0b | 0x0c | 0 => self.at += 1,
-                b'/' if self.bytes.get(self.at + 1) == Some(&b'*') => match memmem::find(&self.bytes[self.at + 2..], b"*/") {
-                    Some(end) => self.at += end + 4,
-                    None => self.at = self.bytes.len(),
-                },
+                b'/' if self.bytes.get(self.at + 1) == Some(&b'*') => {
+                    match memmem::find(&self.bytes[self.at + 2..], b"*/") {
+                        Some(end) => self.at += end + 4,
+                        None => self.at = self.bytes.len(),
+                    }
+                }
                 b')' | b';' => return Kind::End,
                 b'\'' | b'"' => return Kind::String,
                 b'#' => return Kind::Reference,
@@ -197,8 +199,15 @@ impl<'d> Args<'d> {
     }
 
     fn number_here(&mut self) -> Res<f64> {
-        let Some((value, length)) = number::parse(&self.bytes[self.at..]) else { return Err(self.bad("a number")) };
-        if !value.is_finite() || !matches!(self.bytes.get(self.at + length), None | Some(b',' | b')' | b';' | b' ' | b'\n' | b'\r' | b'\t' | b'/')) {
+        let Some((value, length)) = number::parse(&self.bytes[self.at..]) else {
+            return Err(self.bad("a number"));
+        };
+        if !value.is_finite()
+            || !matches!(
+                self.bytes.get(self.at + length),
+                None | Some(b',' | b')' | b';' | b' ' | b'\n' | b'\r' | b'\t' | b'/')
+            )
+        {
             return Err(self.bad("a finite number"));
         }
         self.at += length;
@@ -236,7 +245,8 @@ impl<'d> Args<'d> {
             return None;
         }
         let start = self.at + 1;
-        let length = self.bytes[start..].iter().take_while(|&&b| b.is_ascii_alphanumeric() || b == b'_').count();
+        let length =
+            self.bytes[start..].iter().take_while(|&&b| b.is_ascii_alphanumeric() || b == b'_').count();
         self.at = start + length;
         if self.byte() == Some(b'.') {
             self.at += 1;
@@ -347,7 +357,9 @@ impl<'d> Args<'d> {
     /// As [`Args::references`]; what leads nowhere is left out with a warning.
     pub(crate) fn references_or_warn(&mut self) -> Vec<Ix> {
         match self.references() {
-            Ok(list) => list.into_iter().filter_map(|r| r.map_err(|bad| self.doc.warn_bad(&bad)).ok()).collect(),
+            Ok(list) => {
+                list.into_iter().filter_map(|r| r.map_err(|bad| self.doc.warn_bad(&bad)).ok()).collect()
+            }
             Err(bad) => {
                 self.doc.warn_bad(&bad);
                 Vec::new()

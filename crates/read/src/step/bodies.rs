@@ -30,7 +30,8 @@ impl Builder<'_> {
             Kw::ManifoldSolidBrep | Kw::FacetedBrep | Kw::BrepWithVoids => {
                 let name = args.string();
                 let outer = args.reference()?;
-                let voids = if self.doc.kw(ix) == Kw::BrepWithVoids { args.references_or_warn() } else { Vec::new() };
+                let voids =
+                    if self.doc.kw(ix) == Kw::BrepWithVoids { args.references_or_warn() } else { Vec::new() };
                 self.solid(ix, name, outer, voids);
             }
             Kw::ShellBasedSurfaceModel => {
@@ -60,13 +61,21 @@ impl Builder<'_> {
             Kw::Complex => self.complex_item(ix, depth)?,
             kw if is_surface(kw) => self.loose_surface(ix),
             kw if is_curve(kw) => self.loose(ix, LooseKind::Wire),
-            Kw::CartesianPoint | Kw::PointOnCurve | Kw::PointOnSurface | Kw::VertexPoint | Kw::VertexShell => {
+            Kw::CartesianPoint
+            | Kw::PointOnCurve
+            | Kw::PointOnSurface
+            | Kw::VertexPoint
+            | Kw::VertexShell => {
                 self.loose(ix, LooseKind::Point);
             }
             kw if self.tessellated(ix, kw)? => {}
             kw if is_silent(kw) => {}
             Kw::Unknown => self.unknown_item(ix),
-            kw => return Err(self.doc.bad(ix, format!("{} as an item of a shape is not understood; left out", kw.name()))),
+            kw => {
+                return Err(self
+                    .doc
+                    .bad(ix, format!("{} as an item of a shape is not understood; left out", kw.name())));
+            }
         }
         Ok(())
     }
@@ -82,7 +91,8 @@ impl Builder<'_> {
     fn complex_item(&mut self, ix: Ix, _depth: u32) -> Res<()> {
         let kinds = self.doc.kinds(ix);
         let has = |kw| kinds.contains(&kw);
-        let name = self.doc.find_leaf(ix, Kw::RepresentationItem)?.map(|mut args| args.string()).unwrap_or_default();
+        let name =
+            self.doc.find_leaf(ix, Kw::RepresentationItem)?.map(|mut args| args.string()).unwrap_or_default();
         if has(Kw::ManifoldSolidBrep) {
             let outer = self.doc.leaf(ix, Kw::ManifoldSolidBrep)?.reference()?;
             let voids = self.doc.find_leaf(ix, Kw::BrepWithVoids)?.map(|mut args| args.references_or_warn());
@@ -155,12 +165,18 @@ impl Builder<'_> {
                     at = args.reference()?;
                     flipped = flipped != !args.logical(true);
                 }
-                Kw::ClosedShell | Kw::OpenShell | Kw::ConnectedFaceSet | Kw::ConnectedFaceSubSet | Kw::Complex => {
+                Kw::ClosedShell
+                | Kw::OpenShell
+                | Kw::ConnectedFaceSet
+                | Kw::ConnectedFaceSubSet
+                | Kw::Complex => {
                     let faces = self.shell_faces(at)?;
                     let closed = self.doc.kinds(at).contains(&Kw::ClosedShell);
                     return Ok(self.push_shell(ix, at, &faces, flipped, closed));
                 }
-                Kw::AdvancedFace | Kw::FaceSurface => return Ok(self.push_shell(ix, at, &[at], flipped, false)),
+                Kw::AdvancedFace | Kw::FaceSurface => {
+                    return Ok(self.push_shell(ix, at, &[at], flipped, false));
+                }
                 _ => return Err(self.doc.bad(at, "is not a shell")),
             }
         }
@@ -197,7 +213,14 @@ impl Builder<'_> {
         let shell = ShellId::from(self.part.shells.len());
         self.part.shells.push(Shell { faces, closed: false, source });
         let (color, layer) = (self.color(ix), self.layer(ix));
-        self.part.bodies.push(Body { kind: BodyKind::FaceSet, shells: vec![shell], name, color, layer, source });
+        self.part.bodies.push(Body {
+            kind: BodyKind::FaceSet,
+            shells: vec![shell],
+            name,
+            color,
+            layer,
+            source,
+        });
     }
 
     /// A surface that is no face's: a face of its own where it has bounds.
@@ -311,7 +334,17 @@ fn is_silent(kw: Kw) -> bool {
 
 /// Items that say something about a shape rather than being one.
 fn is_text_or_view(name: &str) -> bool {
-    ["MEASURE", "ANNOTATION", "DRAUGHTING", "CAMERA", "DESCRIPTIVE", "TEXT", "VALUE_REPRESENTATION", "PLANAR_BOX", "INTEGER_REPRESENTATION"]
-        .iter()
-        .any(|word| name.contains(word))
+    [
+        "MEASURE",
+        "ANNOTATION",
+        "DRAUGHTING",
+        "CAMERA",
+        "DESCRIPTIVE",
+        "TEXT",
+        "VALUE_REPRESENTATION",
+        "PLANAR_BOX",
+        "INTEGER_REPRESENTATION",
+    ]
+    .iter()
+    .any(|word| name.contains(word))
 }

@@ -31,7 +31,7 @@ impl Builder<'_> {
                 args.skip(1);
                 let basis = args.reference()?;
                 let same_sense = args.logical(true);
-                let mut trimmed = self.geometry.nested(ix, |_| Ok(()) ).and_then(|()| self.natural(basis))?;
+                let mut trimmed = self.geometry.nested(ix, |_| Ok(())).and_then(|()| self.natural(basis))?;
                 trimmed.same_sense = trimmed.same_sense == same_sense;
                 Ok(trimmed)
             }
@@ -53,20 +53,29 @@ impl Builder<'_> {
         let mut args = self.doc.leaf(ix, Kw::RectangularTrimmedSurface)?;
         args.skip(1);
         let surface = self.geometry.surface(args.reference()?)?;
-        let unit = angular(&surface).map(|is_angle| if is_angle { self.geometry.units.angle_rad } else { 1.0 });
+        let unit =
+            angular(&surface).map(|is_angle| if is_angle { self.geometry.units.angle_rad } else { 1.0 });
         let [u1, u2] = [args.real()? * unit[0], args.real()? * unit[0]];
         let [v1, v2] = [args.real()? * unit[1], args.real()? * unit[1]];
         let (along_u, along_v) = (args.logical(true), args.logical(true));
         let [period_u, period_v] = surface.periods();
-        let u = ordered(u1, u2, along_u, period_u).ok_or_else(|| self.doc.bad(ix, "is trimmed to nothing along u"))?;
-        let v = ordered(v1, v2, along_v, period_v).ok_or_else(|| self.doc.bad(ix, "is trimmed to nothing along v"))?;
+        let u = ordered(u1, u2, along_u, period_u)
+            .ok_or_else(|| self.doc.bad(ix, "is trimmed to nothing along u"))?;
+        let v = ordered(v1, v2, along_v, period_v)
+            .ok_or_else(|| self.doc.bad(ix, "is trimmed to nothing along v"))?;
         let same_sense = along_u == along_v;
         let loops = self.rectangle_loop(self.doc.source(ix), &surface, UvBox::from_ranges(u, v), same_sense);
         Ok(Trimmed { surface, same_sense, loops })
     }
 
     /// The boundary of a box of parameters as a loop; none where the box is all of a closed surface.
-    fn rectangle_loop(&mut self, source: Source, surface: &Arc<Surface>, uv: UvBox, same_sense: bool) -> Vec<Loop> {
+    fn rectangle_loop(
+        &mut self,
+        source: Source,
+        surface: &Arc<Surface>,
+        uv: UvBox,
+        same_sense: bool,
+    ) -> Vec<Loop> {
         let domain = surface.domain();
         if domain.is_finite() && (domain.min - uv.min).abs().max_element() == 0.0 && domain.max == uv.max {
             return Vec::new();
@@ -74,7 +83,11 @@ impl Builder<'_> {
         let (lo, hi) = (uv.min, uv.max);
         let corners = [lo, DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y)];
         let points = corners.map(|c| surface.point(c));
-        let size = points.iter().chain([&surface.point(uv.center())]).map(|p| p.distance(points[0])).fold(0.0, f64::max);
+        let size = points
+            .iter()
+            .chain([&surface.point(uv.center())])
+            .map(|p| p.distance(points[0]))
+            .fold(0.0, f64::max);
         let meets = |a: usize, b: usize| points[a].distance(points[b]) <= SAME_CORNER * size;
         let middle = |a: usize, b: usize| surface.point((corners[a] + corners[b]) * 0.5);
         // A side is a point where its middle lies on its ends; two opposite sides are one seam where both ends meet.
@@ -90,7 +103,8 @@ impl Builder<'_> {
             vertex[i] = Some(known.unwrap_or_else(|| self.new_vertex(points[i], source)));
         }
         let vertex = vertex.map(|v| v.expect("every corner got a vertex"));
-        let side = |a: usize, b: usize| Side { from: corners[a], to: corners[b], start: vertex[a], end: vertex[b] };
+        let side =
+            |a: usize, b: usize| Side { from: corners[a], to: corners[b], start: vertex[a], end: vertex[b] };
         let mut edge = |a, b, is_pole| self.side_edge(source, surface, &side(a, b), is_pole);
         let bottom = edge(0, 1, pole(0, 1));
         let right = if seam_u { None } else { Some(edge(1, 2, pole(1, 2))) };
@@ -98,7 +112,12 @@ impl Builder<'_> {
         let left = edge(0, 3, pole(0, 3));
         let right_side = coedge(right.as_ref().map_or(left.0, |e| e.0), true, &side(1, 2));
         let top_side = coedge(top.as_ref().map_or(bottom.0, |e| e.0), false, &side(3, 2));
-        let mut coedges = vec![coedge(bottom.0, true, &side(0, 1)), right_side, top_side, coedge(left.0, false, &side(0, 3))];
+        let mut coedges = vec![
+            coedge(bottom.0, true, &side(0, 1)),
+            right_side,
+            top_side,
+            coedge(left.0, false, &side(0, 3)),
+        ];
         if !same_sense {
             coedges.reverse();
             coedges.iter_mut().for_each(|c| c.forward = !c.forward);
@@ -112,7 +131,13 @@ impl Builder<'_> {
             Arc::new(Curve::OnSurface { surface: surface.clone(), curve })
         });
         let id = EdgeId::from(self.part.edges.len());
-        self.part.edges.push(Edge { curve, range: Range::new(0.0, 1.0), start: side.start, end: side.end, source });
+        self.part.edges.push(Edge {
+            curve,
+            range: Range::new(0.0, 1.0),
+            start: side.start,
+            end: side.end,
+            source,
+        });
         (id,)
     }
 
@@ -143,11 +168,14 @@ impl Builder<'_> {
     /// A closed chain of curve pieces as edges of their own.
     fn boundary_coedges(&mut self, ix: Ix, segments: Vec<CompositeSegment>) -> Res<Vec<Coedge>> {
         let source = self.doc.source(ix);
-        if segments.iter().any(|s| !s.curve.point(s.start).is_finite() || !s.curve.point(s.end).is_finite() || s.start == s.end) {
+        if segments.iter().any(|s| {
+            !s.curve.point(s.start).is_finite() || !s.curve.point(s.end).is_finite() || s.start == s.end
+        }) {
             return Err(self.doc.bad(ix, "a piece of it has no ends"));
         }
         // Vertex i is where piece i ends and piece i + 1 starts.
-        let joints: Vec<VertexId> = segments.iter().map(|s| self.new_vertex(s.curve.point(s.end), source)).collect();
+        let joints: Vec<VertexId> =
+            segments.iter().map(|s| self.new_vertex(s.curve.point(s.end), source)).collect();
         let mut coedges = Vec::with_capacity(segments.len());
         for (i, segment) in segments.into_iter().enumerate() {
             let (before, after) = (joints[(i + joints.len() - 1) % joints.len()], joints[i]);

@@ -65,7 +65,9 @@ fn listed(multiplicities: &[i64], values: &[f64], degree: usize, count: usize) -
     let total: i128 = multiplicities.iter().map(|&m| i128::from(m)).sum();
     let expected = (count + degree + 1) as i128;
     if total != expected {
-        return Err(format!("the knot multiplicities add up to {total}, expected {expected} ({count} control points, degree {degree})"));
+        return Err(format!(
+            "the knot multiplicities add up to {total}, expected {expected} ({count} control points, degree {degree})"
+        ));
     }
     let mut knots = Vec::with_capacity(count + degree + 1);
     for (&m, &value) in multiplicities.iter().zip(values) {
@@ -108,7 +110,8 @@ mod tests {
 
     #[test]
     fn huge_multiplicities_allocate_nothing() {
-        let knots = Knots::Listed { multiplicities: vec![2_000_000_000, 2_000_000_000], values: vec![0.0, 1.0] };
+        let knots =
+            Knots::Listed { multiplicities: vec![2_000_000_000, 2_000_000_000], values: vec![0.0, 1.0] };
         assert!(knots.vector(3, 4).is_err_and(|e| e.contains("4000000000")));
     }
 

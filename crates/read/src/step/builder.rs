@@ -44,7 +44,13 @@ pub(crate) struct Builder<'d> {
 }
 
 impl<'d> Builder<'d> {
-    pub(crate) fn new(doc: &'d Doc<'d>, styles: &'d Styles, units: Units, name: String, source: Source) -> Self {
+    pub(crate) fn new(
+        doc: &'d Doc<'d>,
+        styles: &'d Styles,
+        units: Units,
+        name: String,
+        source: Source,
+    ) -> Self {
         let part = Part { name, uncertainty: units.uncertainty, source, ..Part::default() };
         Self {
             doc,

@@ -86,7 +86,9 @@ impl Geometry<'_> {
                 };
                 Ok(Curve::Offset { basis, distance, reference })
             }
-            Kw::SurfaceCurve | Kw::SeamCurve | Kw::IntersectionCurve | Kw::BoundedSurfaceCurve => self.surface_curve(ix, args),
+            Kw::SurfaceCurve | Kw::SeamCurve | Kw::IntersectionCurve | Kw::BoundedSurfaceCurve => {
+                self.surface_curve(ix, args)
+            }
             Kw::Pcurve | Kw::BoundedPcurve | Kw::DegeneratePcurve | Kw::EvaluatedDegeneratePcurve => {
                 let (surface_ix, curve) = self.pcurve(ix)?;
                 let surface = self.surface(surface_ix)?;
@@ -119,7 +121,11 @@ impl Geometry<'_> {
     }
 
     fn checked_polyline(&self, ix: Ix, points: Vec<DVec3>) -> Res<Curve> {
-        if points.len() < 2 { Err(self.doc.bad(ix, "has fewer than two points")) } else { Ok(Curve::Polyline(points)) }
+        if points.len() < 2 {
+            Err(self.doc.bad(ix, "has fewer than two points"))
+        } else {
+            Ok(Curve::Polyline(points))
+        }
     }
 
     /// INDEXED_POLY_CURVE(points, segments, …): lines; an arc through three points keeps its three points.
@@ -140,7 +146,8 @@ impl Geometry<'_> {
         if order.is_empty() {
             return self.checked_polyline(ix, points);
         }
-        let picked = order.iter().map(|&i| usize::try_from(i - 1).ok().and_then(|i| points.get(i)).copied()).collect();
+        let picked =
+            order.iter().map(|&i| usize::try_from(i - 1).ok().and_then(|i| points.get(i)).copied()).collect();
         match picked {
             Some(points) => self.checked_polyline(ix, points),
             None => Err(self.doc.bad(ix, "an index lies outside the list of points")),
@@ -156,7 +163,13 @@ impl Geometry<'_> {
             if let Ok((surface_ix, curve)) = self.pcurve(pcurve)
                 && let Ok(surface) = self.surface(surface_ix)
             {
-                self.doc.warn(ix, format!("the curve in space is unusable ({}); its curve on the surface is used", bad.message()));
+                self.doc.warn(
+                    ix,
+                    format!(
+                        "the curve in space is unusable ({}); its curve on the surface is used",
+                        bad.message()
+                    ),
+                );
                 return Ok(Curve::OnSurface { surface, curve: Box::new(curve) });
             }
         }
@@ -179,7 +192,9 @@ impl Geometry<'_> {
             let (degree, points) = spline_head(&mut args)?;
             args.skip(3);
             let knots = match doc.kw(ix) {
-                Kw::BSplineCurveWithKnots => Knots::Listed { multiplicities: args.integers()?, values: args.reals()? },
+                Kw::BSplineCurveWithKnots => {
+                    Knots::Listed { multiplicities: args.integers()?, values: args.reals()? }
+                }
                 kw => match SPLINES.iter().find(|(name, _)| *name == kw) {
                     Some((_, knots)) => knots(),
                     None => return Err(doc.bad(ix, "is not a curve that this reader knows")),
@@ -195,7 +210,10 @@ impl Geometry<'_> {
         let (degree, points) = spline_head(&mut head)?;
         let knots = match leaf(Kw::BSplineCurveWithKnots) {
             Some(mut args) => Knots::Listed { multiplicities: args.integers()?, values: args.reals()? },
-            None => SPLINES.iter().find(|(name, _)| leaf(*name).is_some()).map_or(Knots::QuasiUniform, |(_, knots)| knots()),
+            None => SPLINES
+                .iter()
+                .find(|(name, _)| leaf(*name).is_some())
+                .map_or(Knots::QuasiUniform, |(_, knots)| knots()),
         };
         let weights = leaf(Kw::RationalBSplineCurve).map(|mut args| args.reals()).transpose()?;
         Ok((degree, points, knots, weights))
@@ -215,7 +233,9 @@ impl Geometry<'_> {
         if let Some(weights) = &weights
             && weights.len() != points.len()
         {
-            return Err(self.doc.bad(ix, format!("{} weights for {} control points", weights.len(), points.len())));
+            return Err(self
+                .doc
+                .bad(ix, format!("{} weights for {} control points", weights.len(), points.len())));
         }
         if vector.repaired() {
             self.doc.warn(ix, "an end knot's multiplicity is over the degree + 1; control points without effect are left out");
@@ -276,7 +296,8 @@ impl Geometry<'_> {
                 let mut args = self.doc.open(ix)?;
                 args.skip(1);
                 let space = args.reference();
-                let bounded = space.and_then(|space| self.nested(ix, |geometry| geometry.bounded_or_whole(space)));
+                let bounded =
+                    space.and_then(|space| self.nested(ix, |geometry| geometry.bounded_or_whole(space)));
                 bounded.or_else(|_| self.whole(ix))
             }
             _ => self.whole(ix),
@@ -300,7 +321,8 @@ impl Geometry<'_> {
             let same_sense = args.logical(true);
             let parent = args.reference()?;
             let BoundedCurve { curve, range, forward } = self.bounded(parent)?;
-            let (start, end) = if forward == same_sense { (range.start, range.end) } else { (range.end, range.start) };
+            let (start, end) =
+                if forward == same_sense { (range.start, range.end) } else { (range.end, range.start) };
             match curve {
                 Curve::Composite(inner) => append_composite(&mut segments, inner, start > end),
                 curve => segments.push(CompositeSegment { curve, start, end }),
@@ -313,7 +335,11 @@ impl Geometry<'_> {
 /// Adds the pieces of a composite curve within a composite curve.
 fn append_composite(segments: &mut Vec<CompositeSegment>, inner: Vec<CompositeSegment>, backwards: bool) {
     if backwards {
-        segments.extend(inner.into_iter().rev().map(|s| CompositeSegment { start: s.end, end: s.start, curve: s.curve }));
+        segments.extend(inner.into_iter().rev().map(|s| CompositeSegment {
+            start: s.end,
+            end: s.start,
+            curve: s.curve,
+        }));
     } else {
         segments.extend(inner);
     }
@@ -321,7 +347,9 @@ fn append_composite(segments: &mut Vec<CompositeSegment>, inner: Vec<CompositeSe
 
 fn spline_head(args: &mut Args<'_>) -> Res<(usize, Vec<Ix>)> {
     let degree = args.integer()?;
-    let Ok(degree) = usize::try_from(degree) else { return Err(args.wrong(format!("degree {degree} is negative"))) };
+    let Ok(degree) = usize::try_from(degree) else {
+        return Err(args.wrong(format!("degree {degree} is negative")));
+    };
     Ok((degree, args.references_strict()?))
 }
 

@@ -27,7 +27,8 @@ impl Geometry<'_> {
         let surface = args.reference()?;
         let representation = args.reference()?;
         let leaf = [Kw::DefinitionalRepresentation, Kw::Representation].into_iter();
-        let leaf = leaf.filter(|&kw| self.doc.kw(representation) == Kw::Complex || self.doc.kw(representation) == kw);
+        let leaf = leaf
+            .filter(|&kw| self.doc.kw(representation) == Kw::Complex || self.doc.kw(representation) == kw);
         let mut found = None;
         for kw in leaf {
             if let Some(mut args) = self.doc.find_leaf(representation, kw)? {
@@ -153,9 +154,17 @@ impl Geometry<'_> {
             if !range.is_finite() {
                 return Err(self.doc.bad(segment, "is a curve without ends where a bounded one belongs"));
             }
-            pieces.push(if same_sense { (curve, range.start, range.end) } else { (curve, range.end, range.start) });
+            pieces.push(if same_sense {
+                (curve, range.start, range.end)
+            } else {
+                (curve, range.end, range.start)
+            });
         }
-        if pieces.is_empty() { Err(self.doc.bad(ix, "has no segments")) } else { Ok(Curve2::Composite(pieces)) }
+        if pieces.is_empty() {
+            Err(self.doc.bad(ix, "has no segments"))
+        } else {
+            Ok(Curve2::Composite(pieces))
+        }
     }
 }
 

@@ -217,7 +217,9 @@ fn index(entries: &[Entry], warnings: &mut Vec<Warning>) -> Ids {
             std::collections::hash_map::Entry::Vacant(slot) => {
                 slot.insert(ix);
             }
-            std::collections::hash_map::Entry::Occupied(slot) => duplicate(entry, &entries[*slot.get() as usize]),
+            std::collections::hash_map::Entry::Occupied(slot) => {
+                duplicate(entry, &entries[*slot.get() as usize])
+            }
         }
     }
     Ids::Sparse(map)

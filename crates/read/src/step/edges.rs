@@ -94,7 +94,10 @@ impl Builder<'_> {
             if gap.is_finite() {
                 self.speak_of_gap(ix, curve, located.range, gap);
                 let curve = Some(Arc::new(curve.clone()));
-                return (Edge { curve, range: located.range, start: first, end: last, source }, Some(located));
+                return (
+                    Edge { curve, range: located.range, start: first, end: last, source },
+                    Some(located),
+                );
             }
         }
         let why = match curve {
@@ -121,7 +124,10 @@ impl Builder<'_> {
         }
         let length = locate::length(curve, range);
         if gap > GAP_WORTH_A_WORD * length {
-            self.doc.warn(ix, format!("a vertex lies {gap:.3e} off the edge's curve, whose length is {length:.3e}"));
+            self.doc.warn(
+                ix,
+                format!("a vertex lies {gap:.3e} off the edge's curve, whose length is {length:.3e}"),
+            );
         }
     }
 

@@ -126,7 +126,8 @@ impl Builder<'_> {
         let mut args = doc.open(ix)?;
         match doc.kw(ix) {
             Kw::AdvancedFace | Kw::FaceSurface => {
-                let (name, bounds, geometry) = (args.string(), args.references_strict(), Some(args.reference()));
+                let (name, bounds, geometry) =
+                    (args.string(), args.references_strict(), Some(args.reference()));
                 Ok(FaceData { name, bounds, geometry, same_sense: args.logical(true) })
             }
             Kw::Face => {
@@ -140,7 +141,10 @@ impl Builder<'_> {
             }
             Kw::Complex => {
                 let bounds = doc.leaf(ix, Kw::Face)?.references_strict();
-                let name = doc.find_leaf(ix, Kw::RepresentationItem)?.map(|mut args| args.string()).unwrap_or_default();
+                let name = doc
+                    .find_leaf(ix, Kw::RepresentationItem)?
+                    .map(|mut args| args.string())
+                    .unwrap_or_default();
                 let mut surface = doc.leaf(ix, Kw::FaceSurface)?;
                 let geometry = Some(surface.reference());
                 Ok(FaceData { name, bounds, geometry, same_sense: surface.logical(true) })
@@ -188,7 +192,11 @@ impl Builder<'_> {
         if vertices.len() > 1 && vertices.first() == vertices.last() {
             vertices.pop();
         }
-        if vertices.len() < 3 { Err(self.doc.bad(ix, "has fewer than three distinct points")) } else { Ok(vertices) }
+        if vertices.len() < 3 {
+            Err(self.doc.bad(ix, "has fewer than three distinct points"))
+        } else {
+            Ok(vertices)
+        }
     }
 
     /// EDGE_LOOP: its coedges in running order.

@@ -17,7 +17,10 @@ pub(crate) fn schema(head: &[u8]) -> String {
         "AP242 "
     } else if upper.starts_with("AUTOMOTIVE_DESIGN") {
         "AP214 "
-    } else if upper.starts_with("CONFIG_CONTROL_DESIGN") || upper.starts_with("AP203") || upper.starts_with("CCD_CLA") {
+    } else if upper.starts_with("CONFIG_CONTROL_DESIGN")
+        || upper.starts_with("AP203")
+        || upper.starts_with("CCD_CLA")
+    {
         "AP203 "
     } else {
         ""

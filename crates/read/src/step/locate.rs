@@ -19,14 +19,27 @@ pub(crate) struct Located {
 /// The range of `curve` between two vertices; `None` where it has no length.
 ///
 /// On an open curve the vertices decide which way it runs, on a closed one the file's `same_sense` does.
-pub(crate) fn locate(curve: &Curve, start: DVec3, end: DVec3, same_vertex: bool, same_sense: bool) -> Option<Located> {
+pub(crate) fn locate(
+    curve: &Curve,
+    start: DVec3,
+    end: DVec3,
+    same_vertex: bool,
+    same_sense: bool,
+) -> Option<Located> {
     match curve.period() {
         Some(period) => on_closed(curve, period, start, end, same_vertex, same_sense),
         None => on_open(curve, start, end, same_vertex, same_sense),
     }
 }
 
-fn on_closed(curve: &Curve, period: f64, start: DVec3, end: DVec3, same_vertex: bool, same_sense: bool) -> Option<Located> {
+fn on_closed(
+    curve: &Curve,
+    period: f64,
+    start: DVec3,
+    end: DVec3,
+    same_vertex: bool,
+    same_sense: bool,
+) -> Option<Located> {
     let located = |range| Some(Located { range, swapped: !same_sense, contradicted: false });
     let domain = curve.domain();
     let (first, last) = if same_sense { (start, end) } else { (end, start) };

@@ -61,7 +61,9 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let mut tree = Tree::new(&doc, &styles, &products);
     tree.unfold();
     if tree.roots.is_empty() {
-        let problem = tree.first_problem().map_or_else(|| "no representation has a shape".to_owned(), |bad| bad.to_string());
+        let problem = tree
+            .first_problem()
+            .map_or_else(|| "no representation has a shape".to_owned(), |bad| bad.to_string());
         return Err(ReadError::NothingInIt { name: name.to_owned(), entities: doc.entries.len(), problem });
     }
     let Tree { parts, nodes, roots, unit, .. } = tree;

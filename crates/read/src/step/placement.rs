@@ -83,7 +83,8 @@ impl Geometry<'_> {
 
     /// AXIS2_PLACEMENT_3D, with the defaults of ISO 10303-42 for what is omitted or broken.
     pub(crate) fn frame(&mut self, ix: Ix) -> Res<Frame> {
-        let kw = if self.doc.kw(ix) == Kw::Axis1Placement { Kw::Axis1Placement } else { Kw::Axis2Placement3d };
+        let kw =
+            if self.doc.kw(ix) == Kw::Axis1Placement { Kw::Axis1Placement } else { Kw::Axis2Placement3d };
         let mut args = self.doc.leaf(ix, kw)?;
         args.skip(1);
         let origin = self.point(args.reference()?)?;

@@ -101,7 +101,8 @@ impl Products {
             match (args.reference(), args.reference()) {
                 (Ok(parent), Ok(child)) => {
                     let designator = args.string();
-                    let name = [name, designator, id].into_iter().find(|name| is_name(name)).unwrap_or_default();
+                    let name =
+                        [name, designator, id].into_iter().find(|name| is_name(name)).unwrap_or_default();
                     self.usages.entry(parent).or_default().push(Usage { ix, child, name });
                     self.used.insert(child);
                 }
@@ -120,7 +121,8 @@ impl Products {
                 continue;
             };
             placing.insert(relation);
-            if let (Some(relation), Some(usage)) = (Relation::read(doc, relation), Self::defined(doc, shape)) {
+            if let (Some(relation), Some(usage)) = (Relation::read(doc, relation), Self::defined(doc, shape))
+            {
                 self.placements.entry(usage).or_insert((ix, relation));
             }
         }

@@ -14,7 +14,8 @@ pub(crate) struct Representation {
 impl Representation {
     /// Reads a representation of any kind, simple or complex.
     pub(crate) fn read(doc: &Doc<'_>, ix: Ix) -> Res<Self> {
-        let mut args = if doc.kw(ix) == Kw::Complex { doc.leaf(ix, Kw::Representation)? } else { doc.open(ix)? };
+        let mut args =
+            if doc.kw(ix) == Kw::Complex { doc.leaf(ix, Kw::Representation)? } else { doc.open(ix)? };
         let name = args.string();
         let items = args.references_or_warn();
         Ok(Self { name, items, context: args.optional_reference() })

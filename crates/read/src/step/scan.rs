@@ -55,7 +55,15 @@ pub(crate) fn scan(bytes: &[u8], keywords: &Keywords) -> Scan {
         return Scan { lines: count_lines(bytes), ..Scan::default() };
     };
     let line = 1 + count_lines(&bytes[..data]);
-    let mut scanner = Scanner { bytes, at: data, line, out: Scan::default(), keywords, scopes: Vec::new(), comments_open: false };
+    let mut scanner = Scanner {
+        bytes,
+        at: data,
+        line,
+        out: Scan::default(),
+        keywords,
+        scopes: Vec::new(),
+        comments_open: false,
+    };
     scanner.out.data = Some(data);
     scanner.out.entries.reserve(bytes.len() / 96);
     scanner.sections();
@@ -110,7 +118,9 @@ const CLASS: [u8; 256] = {
 impl Scanner<'_> {
     fn warn(&mut self, entity: u64, message: impl Into<String>) {
         if self.out.warnings.len() < super::document::MAX_WARNINGS {
-            self.out.warnings.push(Warning { source: Source { entity, line: self.line }, message: message.into() });
+            self.out
+                .warnings
+                .push(Warning { source: Source { entity, line: self.line }, message: message.into() });
         }
     }
 
@@ -180,7 +190,10 @@ impl Scanner<'_> {
                         }
                         b"END-ISO-10303-21" => ended = true,
                         _ if in_data => {
-                            self.warn(0, format!("{} is no entity; passed over", String::from_utf8_lossy(&name)));
+                            self.warn(
+                                0,
+                                format!("{} is no entity; passed over", String::from_utf8_lossy(&name)),
+                            );
                         }
                         _ => {}
                     }
@@ -264,7 +277,8 @@ impl Scanner<'_> {
         if self.bytes.get(self.at) == Some(&b'/') {
             // The list of exported ids, `/#1,#2/`.
             self.at += 1;
-            let export = memchr(b'/', &self.bytes[self.at..]).map_or(self.bytes.len(), |end| self.at + end + 1);
+            let export =
+                memchr(b'/', &self.bytes[self.at..]).map_or(self.bytes.len(), |end| self.at + end + 1);
             self.line += count_lines(&self.bytes[self.at..export]);
             self.at = export;
             self.blank();

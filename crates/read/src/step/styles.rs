@@ -164,17 +164,19 @@ fn rgb(doc: &Doc<'_>, ix: Ix) -> Option<[f64; 3]> {
             args.skip(1);
             Some([args.real().ok()?, args.real().ok()?, args.real().ok()?])
         }
-        Kw::DraughtingPreDefinedColour | Kw::PreDefinedColour => match args.string().to_ascii_lowercase().as_str() {
-            "red" => Some([1.0, 0.0, 0.0]),
-            "green" => Some([0.0, 1.0, 0.0]),
-            "blue" => Some([0.0, 0.0, 1.0]),
-            "yellow" => Some([1.0, 1.0, 0.0]),
-            "magenta" => Some([1.0, 0.0, 1.0]),
-            "cyan" => Some([0.0, 1.0, 1.0]),
-            "black" => Some([0.0; 3]),
-            "white" => Some([1.0; 3]),
-            _ => None,
-        },
+        Kw::DraughtingPreDefinedColour | Kw::PreDefinedColour => {
+            match args.string().to_ascii_lowercase().as_str() {
+                "red" => Some([1.0, 0.0, 0.0]),
+                "green" => Some([0.0, 1.0, 0.0]),
+                "blue" => Some([0.0, 0.0, 1.0]),
+                "yellow" => Some([1.0, 1.0, 0.0]),
+                "magenta" => Some([1.0, 0.0, 1.0]),
+                "cyan" => Some([0.0, 1.0, 1.0]),
+                "black" => Some([0.0; 3]),
+                "white" => Some([1.0; 3]),
+                _ => None,
+            }
+        }
         _ => None,
     }
 }

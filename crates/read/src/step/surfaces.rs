@@ -27,7 +27,8 @@ impl Geometry<'_> {
     pub(crate) fn build_surface(&mut self, ix: Ix) -> Res<Surface> {
         let doc = self.doc;
         let kw = doc.kw(ix);
-        if kw == Kw::Complex || kw == Kw::BSplineSurfaceWithKnots || FORMS.iter().any(|(form, _)| *form == kw) {
+        if kw == Kw::Complex || kw == Kw::BSplineSurfaceWithKnots || FORMS.iter().any(|(form, _)| *form == kw)
+        {
             return self.spline_surface(ix);
         }
         let mut args = doc.open(ix)?;
@@ -95,7 +96,10 @@ impl Geometry<'_> {
         if rows.iter().any(|row| row.len() != count_v) {
             return Err(bad("rows of the control net differ in length".into()));
         }
-        let vectors = [knots[0].vector(degree[0], rows.len()).map_err(bad)?, knots[1].vector(degree[1], count_v).map_err(bad)?];
+        let vectors = [
+            knots[0].vector(degree[0], rows.len()).map_err(bad)?,
+            knots[1].vector(degree[1], count_v).map_err(bad)?,
+        ];
         let trim = |rows: Vec<Vec<f64>>| flatten(&vectors, rows);
         let weights = match weights {
             Some(w) if w.len() != rows.len() || w.iter().any(|row| row.len() != count_v) => {
@@ -134,7 +138,10 @@ impl Geometry<'_> {
         let knots = match leaf(Kw::BSplineSurfaceWithKnots) {
             Some(mut args) => listed_knots(&mut args)?,
             None => {
-                let form = FORMS.iter().find(|(form, _)| leaf(*form).is_some()).map_or(FORMS[1].1, |(_, knots)| *knots);
+                let form = FORMS
+                    .iter()
+                    .find(|(form, _)| leaf(*form).is_some())
+                    .map_or(FORMS[1].1, |(_, knots)| *knots);
                 [form(), form()]
             }
         };

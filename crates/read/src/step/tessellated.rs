@@ -40,7 +40,8 @@ impl Builder<'_> {
         if !is_set && !is_faceted(kw) {
             return Ok(false);
         }
-        let mut item = TessellatedItem { color: self.color(ix), source: self.doc.source(ix), ..Default::default() };
+        let mut item =
+            TessellatedItem { color: self.color(ix), source: self.doc.source(ix), ..Default::default() };
         if is_set {
             let mut args = self.doc.open(ix)?;
             item.name = args.string();
@@ -67,7 +68,12 @@ impl Builder<'_> {
                 }
             } else if is_faceted(kw) {
                 let color = self.color(member);
-                let mut own = TessellatedItem { color, name: item.name.clone(), source: self.doc.source(member), ..Default::default() };
+                let mut own = TessellatedItem {
+                    color,
+                    name: item.name.clone(),
+                    source: self.doc.source(member),
+                    ..Default::default()
+                };
                 let result = self.triangles(member, &mut own);
                 match result {
                     Err(bad) => self.warn_bad(&bad),
@@ -90,7 +96,11 @@ impl Builder<'_> {
             args.skip(1);
         }
         let picked = args.integers()?;
-        item.points = if picked.is_empty() { all } else { picked.iter().map(|&i| pick(&args, &all, i)).collect::<Res<_>>()? };
+        item.points = if picked.is_empty() {
+            all
+        } else {
+            picked.iter().map(|&i| pick(&args, &all, i)).collect::<Res<_>>()?
+        };
         item.normals = match normals.len() {
             1 => vec![normals[0]; item.points.len()],
             n if n == item.points.len() => normals,
@@ -123,13 +133,18 @@ impl Builder<'_> {
 fn is_faceted(kw: Kw) -> bool {
     matches!(
         kw,
-        Kw::TriangulatedFace | Kw::ComplexTriangulatedFace | Kw::TriangulatedSurfaceSet | Kw::ComplexTriangulatedSurfaceSet
+        Kw::TriangulatedFace
+            | Kw::ComplexTriangulatedFace
+            | Kw::TriangulatedSurfaceSet
+            | Kw::ComplexTriangulatedSurfaceSet
     )
 }
 
 fn pick(args: &Args<'_>, points: &[DVec3], index: i64) -> Res<DVec3> {
     let found = usize::try_from(index - 1).ok().and_then(|i| points.get(i));
-    found.copied().ok_or_else(|| args.wrong(format!("point {index} lies outside the list of {}", points.len())))
+    found
+        .copied()
+        .ok_or_else(|| args.wrong(format!("point {index} lies outside the list of {}", points.len())))
 }
 
 /// Corners counted from one; degenerate triangles and those with a corner outside the list are left out.

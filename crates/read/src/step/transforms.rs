@@ -53,7 +53,9 @@ fn operator(geometry: &mut Geometry<'_>, ix: Ix) -> Res<DAffine3> {
 fn operator_of_leaves(geometry: &mut Geometry<'_>, ix: Ix) -> Res<DAffine3> {
     let doc = geometry.doc;
     let leaves = doc.open(ix)?.leaves();
-    let Some((_, mut own)) = leaves.iter().find(|(kw, _)| *kw == Kw::CartesianTransformationOperator3d).cloned() else {
+    let Some((_, mut own)) =
+        leaves.iter().find(|(kw, _)| *kw == Kw::CartesianTransformationOperator3d).cloned()
+    else {
         return Err(doc.bad(ix, "is not a placement that this reader knows"));
     };
     let Some((_, mut base)) = leaves.into_iter().find(|(_, args)| args.left() >= 3) else {
@@ -68,8 +70,15 @@ fn operator_of_leaves(geometry: &mut Geometry<'_>, ix: Ix) -> Res<DAffine3> {
 
 /// The axes made orthonormal as ISO 10303-42 does (third, first, second in this order); the second keeps its side,
 /// so that a mirrored operator mirrors.
-fn assemble(geometry: &Geometry<'_>, ix: Ix, axes: [Option<Ix>; 3], origin: DVec3, scale: f64) -> Res<DAffine3> {
-    let given = axes.map(|axis| axis.and_then(|axis| geometry.direction(axis).ok()).and_then(DVec3::try_normalize));
+fn assemble(
+    geometry: &Geometry<'_>,
+    ix: Ix,
+    axes: [Option<Ix>; 3],
+    origin: DVec3,
+    scale: f64,
+) -> Res<DAffine3> {
+    let given =
+        axes.map(|axis| axis.and_then(|axis| geometry.direction(axis).ok()).and_then(DVec3::try_normalize));
     let frame = Frame::new(origin, given[2].unwrap_or(DVec3::Z), given[0].unwrap_or(DVec3::X));
     let mirrored = given[1].is_some_and(|y| y.dot(frame.y) < 0.0);
     let y = if mirrored { -frame.y } else { frame.y };

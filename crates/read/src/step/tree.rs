@@ -58,7 +58,8 @@ impl<'d> Tree<'d> {
 
     /// Unfolds everything: products, then representations that no product leads to, then bodies without either.
     pub(crate) fn unfold(&mut self) {
-        let tops: Vec<Ix> = self.products.definitions.iter().copied().filter(|pd| !self.products.used.contains(pd)).collect();
+        let tops: Vec<Ix> =
+            self.products.definitions.iter().copied().filter(|pd| !self.products.used.contains(pd)).collect();
         for &top in &tops {
             self.root_product(top);
         }
@@ -123,7 +124,10 @@ impl<'d> Tree<'d> {
     fn new_node(&mut self, name: String, ix: Ix) -> Option<NodeId> {
         if self.nodes.len() >= MAX_NODES {
             if !self.cut_off {
-                self.doc.warn(ix, format!("the assembly unfolds to more than {MAX_NODES} nodes; the rest is left out"));
+                self.doc.warn(
+                    ix,
+                    format!("the assembly unfolds to more than {MAX_NODES} nodes; the rest is left out"),
+                );
             }
             self.cut_off = true;
             return None;
@@ -219,13 +223,16 @@ impl<'d> Tree<'d> {
             self.doc.warn(transformation, "its two items belong to the other representation each; exchanged");
             std::mem::swap(&mut ours, &mut theirs);
         }
-        let (from, to) = (Side { item: ours, length_mm: child_mm }, Side { item: theirs, length_mm: parent_mm });
+        let (from, to) =
+            (Side { item: ours, length_mm: child_mm }, Side { item: theirs, length_mm: parent_mm });
         transforms::between(self.doc, from, to)
     }
 
     /// True where the child's item is listed only by the parent and the parent's only by the child.
     fn crossed(&self, child: Ix, parent: Ix, ours: Ix, theirs: Ix) -> bool {
-        let lists = |rep: Ix, item: Ix| Representation::read(self.doc, rep).is_ok_and(|rep| rep.items.contains(&item));
+        let lists = |rep: Ix, item: Ix| {
+            Representation::read(self.doc, rep).is_ok_and(|rep| rep.items.contains(&item))
+        };
         ours != theirs
             && !lists(child, ours)
             && lists(parent, ours)
@@ -273,8 +280,13 @@ impl<'d> Tree<'d> {
     /// A colour given to a component's item only within this use.
     fn usage_color(&self, usage: &Usage) -> Option<Color> {
         let (placement, relation) = self.products.placements.get(&usage.ix)?;
-        let names_this = |entities: &[Ix]| entities.iter().any(|ix| [*placement, relation.ix, usage.ix].contains(ix));
-        self.styles.in_context.iter().find(|(_, entities, _)| names_this(entities)).map(|&(_, _, color)| color)
+        let names_this =
+            |entities: &[Ix]| entities.iter().any(|ix| [*placement, relation.ix, usage.ix].contains(ix));
+        self.styles
+            .in_context
+            .iter()
+            .find(|(_, entities, _)| names_this(entities))
+            .map(|&(_, _, color)| color)
     }
 
     /// Adds the content of a representation to a node whose units are `mm` millimetres.
@@ -290,7 +302,15 @@ impl<'d> Tree<'d> {
         self.path.pop();
     }
 
-    fn attach_items(&mut self, id: NodeId, rep: Ix, read: &Representation, to_node: DAffine3, mm: f64, name: &str) {
+    fn attach_items(
+        &mut self,
+        id: NodeId,
+        rep: Ix,
+        read: &Representation,
+        to_node: DAffine3,
+        mm: f64,
+        name: &str,
+    ) {
         let part = self.part(rep, read, name);
         let own_mm = read.context.map_or(mm, |context| self.units_of(Some(context)).length_mm);
         let plain = to_node == DAffine3::IDENTITY && own_mm == mm;
@@ -328,7 +348,9 @@ impl<'d> Tree<'d> {
             Side { item: origin, length_mm: mm },
             Side { item: target, length_mm: parent_mm },
         )?;
-        let Some(id) = self.new_node(if own_name.is_empty() { name.to_owned() } else { own_name }, ix) else { return Ok(()) };
+        let Some(id) = self.new_node(if own_name.is_empty() { name.to_owned() } else { own_name }, ix) else {
+            return Ok(());
+        };
         self.nodes[id.index()].transform = transform;
         self.nodes[id.index()].color = self.styles.colors.get(&ix).copied();
         self.nodes[parent.index()].children.push(id);
@@ -351,7 +373,13 @@ impl<'d> Tree<'d> {
         part
     }
 
-    fn build_part(&mut self, items: &[Ix], context: Option<Ix>, name: String, source: Source) -> Option<PartId> {
+    fn build_part(
+        &mut self,
+        items: &[Ix],
+        context: Option<Ix>,
+        name: String,
+        source: Source,
+    ) -> Option<PartId> {
         let units = self.units_of(context);
         let mut builder = Builder::new(self.doc, self.styles, units, name, source);
         for &item in items {

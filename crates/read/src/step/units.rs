@@ -90,7 +90,12 @@ fn read_unit(doc: &Doc<'_>, ix: Ix, depth: u32) -> Unit {
         if kinds.len() == 1 && args.left() == 3 {
             args.skip(1);
         }
-        let prefix = if args.kind() == Kind::Enumeration { args.enumeration() } else { args.skip(1); None };
+        let prefix = if args.kind() == Kind::Enumeration {
+            args.enumeration()
+        } else {
+            args.skip(1);
+            None
+        };
         let (factor, prefix_name) = prefix_factor(prefix.unwrap_or_default());
         return match args.enumeration() {
             Some(b"METRE") => Unit::Length(factor * 1000.0, format!("{prefix_name}m")),
@@ -114,7 +119,9 @@ fn conversion(doc: &Doc<'_>, ix: Ix, depth: u32) -> Unit {
     let Some(mut args) = kinds.iter().find_map(|&kw| doc.find_leaf(measure, kw).ok().flatten()) else {
         return named(doc, ix, &name);
     };
-    let (Some(factor), Some(unit)) = (args.optional_real(), args.optional_reference()) else { return named(doc, ix, &name) };
+    let (Some(factor), Some(unit)) = (args.optional_real(), args.optional_reference()) else {
+        return named(doc, ix, &name);
+    };
     if factor <= 0.0 {
         return named(doc, ix, &name);
     }
