@@ -24,6 +24,23 @@ const SPLINES: [(Kw, fn() -> Knots); 4] = [
     (Kw::BSplineCurve, || Knots::QuasiUniform),
 ];
 
+/// Leaves of complex instances that carry the attributes of a curve other than a spline.
+pub(crate) const CURVES: [Kw; 8] = [
+    Kw::SurfaceCurve,
+    Kw::Pcurve,
+    Kw::TrimmedCurve,
+    Kw::CompositeCurve,
+    Kw::Polyline,
+    Kw::OffsetCurve3d,
+    Kw::DegeneratePcurve,
+    Kw::IndexedPolyCurve,
+];
+
+/// The 3D curve of these comes first, then the list of the curves in parameter spaces.
+pub(crate) fn is_surface_curve(kw: Kw) -> bool {
+    matches!(kw, Kw::SurfaceCurve | Kw::SeamCurve | Kw::IntersectionCurve | Kw::BoundedSurfaceCurve)
+}
+
 impl Geometry<'_> {
     /// The curve of an entity, without the bounds that it may have; turned round where its sense is against it.
     pub(crate) fn curve(&mut self, ix: Ix) -> Res<Curve> {
@@ -37,31 +54,26 @@ impl Geometry<'_> {
 
     fn build_curve(&mut self, ix: Ix) -> Res<Curve> {
         let doc = self.doc;
-        let mut args = doc.open(ix)?;
-        match doc.kw(ix) {
+        let (kw, mut args) = doc.body(ix, &CURVES)?;
+        match kw {
             Kw::Line => {
-                args.skip(1);
                 let origin = self.point(args.reference()?)?;
                 Ok(Curve::Line { origin, direction: self.vector(args.reference()?)? })
             }
             Kw::Circle => {
-                args.skip(1);
                 let frame = self.frame(args.reference()?)?;
                 Ok(Curve::Circle { frame, radius: self.size(ix, "radius", args.real()?)? })
             }
             Kw::Ellipse => {
-                args.skip(1);
                 let frame = self.frame(args.reference()?)?;
                 let a = self.size(ix, "first semi-axis", args.real()?)?;
                 Ok(Curve::Ellipse { frame, a, b: self.size(ix, "second semi-axis", args.real()?)? })
             }
             Kw::Parabola => {
-                args.skip(1);
                 let frame = self.frame(args.reference()?)?;
                 Ok(Curve::Parabola { frame, focal: self.size(ix, "focal distance", args.real()?)? })
             }
             Kw::Hyperbola => {
-                args.skip(1);
                 let frame = self.frame(args.reference()?)?;
                 let a = self.size(ix, "semi-axis", args.real()?)?;
                 Ok(Curve::Hyperbola { frame, a, b: self.size(ix, "imaginary semi-axis", args.real()?)? })
@@ -76,17 +88,15 @@ impl Geometry<'_> {
                 Ok(Curve::Composite(self.composite_segments(ix)?))
             }
             Kw::OffsetCurve3d => {
-                args.skip(1);
                 let basis = Box::new(self.curve(args.reference()?)?);
                 let distance = args.real()?;
-                args.skip(1);
                 let reference = self.direction(args.reference()?)?;
                 let Some(reference) = reference.try_normalize() else {
                     return Err(doc.bad(ix, "the reference direction is a zero vector"));
                 };
                 Ok(Curve::Offset { basis, distance, reference })
             }
-            Kw::SurfaceCurve | Kw::SeamCurve | Kw::IntersectionCurve | Kw::BoundedSurfaceCurve => {
+            kw if is_surface_curve(kw) => {
                 self.surface_curve(ix, args)
             }
             Kw::Pcurve | Kw::BoundedPcurve | Kw::DegeneratePcurve | Kw::EvaluatedDegeneratePcurve => {
@@ -114,7 +124,6 @@ impl Geometry<'_> {
     }
 
     fn polyline(&mut self, ix: Ix, mut args: Args<'_>) -> Res<Curve> {
-        args.skip(1);
         let list = args.references_strict()?;
         let points = self.points(list)?;
         self.checked_polyline(ix, points)
@@ -130,7 +139,6 @@ impl Geometry<'_> {
 
     /// INDEXED_POLY_CURVE(points, segments, …): lines; an arc through three points keeps its three points.
     fn indexed_polyline(&mut self, ix: Ix, mut args: Args<'_>) -> Res<Curve> {
-        args.skip(1);
         let points = self.coordinates_list(args.reference()?)?;
         let mut order = Vec::new();
         if let Ok(mut segments) = args.list() {
@@ -156,7 +164,6 @@ impl Geometry<'_> {
 
     /// SURFACE_CURVE and its kin: the curve in space, else the first one in a parameter space.
     fn surface_curve(&mut self, ix: Ix, mut args: Args<'_>) -> Res<Curve> {
-        args.skip(1);
         let space = args.reference().and_then(|curve| self.curve(curve));
         let Err(bad) = space else { return space };
         for pcurve in args.references_or_warn() {
@@ -246,8 +253,7 @@ impl Geometry<'_> {
 
     /// TRIMMED_CURVE: its basis with the range between the trims.
     fn trimmed(&mut self, ix: Ix) -> Res<BoundedCurve> {
-        let mut args = self.doc.leaf(ix, Kw::TrimmedCurve)?;
-        args.skip(1);
+        let (_, mut args) = self.doc.body(ix, &CURVES)?;
         let basis_ix = args.reference()?;
         let basis = self.nested(ix, |geometry| geometry.bounded_or_whole(basis_ix))?;
         let trims = [Trim::read(&mut args)?, Trim::read(&mut args)?];
@@ -290,18 +296,16 @@ impl Geometry<'_> {
     }
 
     fn bounded_or_whole(&mut self, ix: Ix) -> Res<BoundedCurve> {
-        match self.doc.kw(ix) {
-            Kw::TrimmedCurve => self.nested(ix, |geometry| geometry.trimmed(ix)),
-            Kw::SurfaceCurve | Kw::SeamCurve | Kw::IntersectionCurve | Kw::BoundedSurfaceCurve => {
-                let mut args = self.doc.open(ix)?;
-                args.skip(1);
-                let space = args.reference();
-                let bounded =
-                    space.and_then(|space| self.nested(ix, |geometry| geometry.bounded_or_whole(space)));
-                bounded.or_else(|_| self.whole(ix))
-            }
-            _ => self.whole(ix),
+        let (kw, mut args) = self.doc.body(ix, &CURVES)?;
+        if kw == Kw::TrimmedCurve {
+            return self.nested(ix, |geometry| geometry.trimmed(ix));
         }
+        if is_surface_curve(kw) {
+            let space = args.reference();
+            let bounded = space.and_then(|space| self.nested(ix, |geometry| geometry.bounded_or_whole(space)));
+            return bounded.or_else(|_| self.whole(ix));
+        }
+        self.whole(ix)
     }
 
     fn whole(&mut self, ix: Ix) -> Res<BoundedCurve> {
@@ -312,8 +316,7 @@ impl Geometry<'_> {
 
     /// The pieces of a composite curve, each with its bounds, in running order.
     pub(crate) fn composite_segments(&mut self, ix: Ix) -> Res<Vec<CompositeSegment>> {
-        let mut args = self.doc.open(ix)?;
-        args.skip(1);
+        let (_, mut args) = self.doc.body(ix, &CURVES)?;
         let mut segments = Vec::new();
         for segment in args.references_strict()? {
             let mut args = self.doc.leaf(segment, Kw::CompositeCurveSegment)?;

@@ -170,6 +170,19 @@ impl<'a> Doc<'a> {
         Ok(args.leaves().into_iter().find(|(name, _)| *name == kw).map(|(_, args)| args))
     }
 
+    /// What an instance is, with the attributes that follow its name: those of a simple entity, or those of the first
+    /// leaf of a complex instance that is one of `principal`.
+    pub(crate) fn body(&self, ix: Ix, principal: &[Kw]) -> Res<(Kw, Args<'_>)> {
+        let mut args = self.open(ix)?;
+        if self.kw(ix) != Kw::Complex {
+            args.skip(1);
+            return Ok((self.kw(ix), args));
+        }
+        let leaves = args.leaves();
+        let found = principal.iter().find_map(|kw| leaves.iter().find(|(name, _)| name == kw));
+        Ok(found.map_or((Kw::Complex, self.open(ix)?), |(kw, args)| (*kw, args.clone())))
+    }
+
     /// Keywords of the leaves of a complex instance, or the one of a simple entity.
     pub(crate) fn kinds(&self, ix: Ix) -> Vec<Kw> {
         if self.kw(ix) != Kw::Complex {

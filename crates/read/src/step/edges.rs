@@ -1,6 +1,7 @@
 //! Vertices and edges: one edge for each EDGE_CURVE, one vertex for each VERTEX_POINT, whatever the faces that use them.
 
 use super::builder::{Builder, KnownEdge, SurfaceUse};
+use super::curves::{CURVES, is_surface_curve};
 use super::document::{Ix, Res};
 use super::keyword::Kw;
 use super::locate::{self, Located, locate};
@@ -133,13 +134,13 @@ impl Builder<'_> {
 
     /// The curves of an edge's geometry in parameter spaces, each over its own range or over the edge's.
     fn pcurves(&mut self, geometry: Ix, edge_range: Option<Range>) -> Vec<SurfaceUse> {
-        let list = match self.doc.kw(geometry) {
-            Kw::SurfaceCurve | Kw::SeamCurve | Kw::IntersectionCurve | Kw::BoundedSurfaceCurve => {
-                let Ok(mut args) = self.doc.open(geometry) else { return Vec::new() };
-                args.skip(2);
+        let Ok((kw, mut args)) = self.doc.body(geometry, &CURVES) else { return Vec::new() };
+        let list = match kw {
+            Kw::Pcurve | Kw::BoundedPcurve => vec![geometry],
+            kw if is_surface_curve(kw) => {
+                args.skip(1);
                 args.references_or_warn()
             }
-            Kw::Pcurve | Kw::BoundedPcurve => vec![geometry],
             _ => return Vec::new(),
         };
         let mut found = Vec::new();

@@ -44,15 +44,18 @@ fn on_closed(
     let domain = curve.domain();
     let (first, last) = if same_sense { (start, end) } else { (end, start) };
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * period;
-    let mut t0 = parameter_of(curve, first);
-    if near(t0, domain.end) || is_end(curve, domain.start, first) {
+    let at_seam = [first, last].map(|vertex| is_end(curve, domain.start, vertex));
+    // Two vertices that both seem to lie on the seam, one of them beside it: an edge that is tiny, or nearly all.
+    let snap = !(at_seam[0] && at_seam[1]) || first == last;
+    let mut t0 = if snap && at_seam[0] { domain.start } else { parameter_of(curve, first) };
+    if near(t0, domain.end) {
         t0 = domain.start;
     }
     if same_vertex {
         return located(Range::new(t0, t0 + period));
     }
-    let mut t1 = parameter_of(curve, last);
-    if near(t1, domain.start) || is_end(curve, domain.start, last) {
+    let mut t1 = if snap && at_seam[1] { domain.end } else { parameter_of(curve, last) };
+    if near(t1, domain.start) {
         t1 = domain.end;
     }
     if !t0.is_finite() || !t1.is_finite() {
@@ -82,22 +85,10 @@ fn on_open(curve: &Curve, start: DVec3, end: DVec3, same_vertex: bool, same_sens
         // Its ends do not meet, yet it is said to be closed: all of it is meant.
         return Some(Located { range: domain, swapped: !same_sense, contradicted: false });
     }
-    let mut t = [f64::NAN; 2];
-    if bounded {
-        let snap = SNAP * size(curve);
-        let ends = [curve.point(domain.start), curve.point(domain.end)];
-        for (t, vertex) in t.iter_mut().zip([start, end]) {
-            let d = ends.map(|p| p.distance(vertex));
-            *t = if d[0] <= snap && d[0] <= d[1] {
-                domain.start
-            } else if d[1] <= snap {
-                domain.end
-            } else {
-                parameter_of(curve, vertex)
-            };
-        }
-    } else {
-        t = [parameter_of(curve, start), parameter_of(curve, end)];
+    let mut t = [start, end].map(|vertex| if bounded { snapped(curve, vertex) } else { parameter_of(curve, vertex) });
+    if bounded && t[0] == t[1] {
+        // A tiny edge at the curve's end.
+        t = [start, end].map(|vertex| parameter_of(curve, vertex));
     }
     let [t0, t1] = t;
     if !t0.is_finite() || !t1.is_finite() || t0 == t1 {
@@ -106,6 +97,20 @@ fn on_open(curve: &Curve, start: DVec3, end: DVec3, same_vertex: bool, same_sens
     let swapped = t0 > t1;
     let range = if swapped { Range::new(t1, t0) } else { Range::new(t0, t1) };
     Some(Located { range, swapped, contradicted: swapped == same_sense })
+}
+
+/// The parameter of a vertex, which is an end's where the vertex is as good as there.
+fn snapped(curve: &Curve, vertex: DVec3) -> f64 {
+    let domain = curve.domain();
+    let snap = SNAP * size(curve);
+    let d = [domain.start, domain.end].map(|t| curve.point(t).distance(vertex));
+    if d[0] <= snap && d[0] <= d[1] {
+        domain.start
+    } else if d[1] <= snap {
+        domain.end
+    } else {
+        parameter_of(curve, vertex)
+    }
 }
 
 /// About how large a bounded curve is.

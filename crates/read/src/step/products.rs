@@ -80,10 +80,10 @@ impl Products {
                         shapes.push(representation);
                     }
                 }
-                Some(_) => {
+                // The shape of a feature or of a property: it repeats items that belong to a product's shape.
+                _ => {
                     self.auxiliary.insert(representation);
                 }
-                None => {}
             }
         }
         self.auxiliary.retain(|rep| !self.owned.contains(rep));

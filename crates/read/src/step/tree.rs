@@ -71,7 +71,10 @@ impl<'d> Tree<'d> {
             }
             self.root_product(first);
         }
-        self.orphans();
+        self.orphans(false);
+        if self.roots.is_empty() {
+            self.orphans(true);
+        }
         if self.roots.is_empty() {
             self.bodies_alone();
         }
@@ -393,13 +396,13 @@ impl<'d> Tree<'d> {
         })
     }
 
-    /// Shape representations that no product leads to.
-    fn orphans(&mut self) {
+    /// Shape representations that no product leads to; those of features and properties only where nothing else is.
+    fn orphans(&mut self, auxiliary: bool) {
         let doc = self.doc;
         let candidates = doc.all(|kw| !matches!(kw, Kw::CartesianPoint | Kw::Direction | Kw::OrientedEdge));
         let reps: Vec<Ix> = candidates.into_iter().filter(|&ix| is_shape(doc, ix)).collect();
         for rep in reps {
-            if self.reached.contains(&rep) || self.products.auxiliary.contains(&rep) {
+            if self.reached.contains(&rep) || (!auxiliary && self.products.auxiliary.contains(&rep)) {
                 continue;
             }
             let Ok(read) = Representation::read(doc, rep) else { continue };
