@@ -39,6 +39,10 @@ pub(crate) struct Builder<'d> {
     corners: FxHashMap<[u64; 3], VertexId>,
     /// Vertices found to be one: the second is replaced by the first when the part is finished.
     same: Vec<(VertexId, VertexId)>,
+    /// Straight edges put into gaps of loops, by their vertices.
+    pub joints: FxHashMap<(VertexId, VertexId), EdgeId>,
+    /// By edge: true where a loop uses it already.
+    pub settled: Vec<bool>,
     /// Items taken already; one entity makes one body however often it is listed.
     pub taken: FxHashSet<Ix>,
 }
@@ -61,6 +65,8 @@ impl<'d> Builder<'d> {
             edges: FxHashMap::default(),
             corners: FxHashMap::default(),
             same: Vec::new(),
+            joints: FxHashMap::default(),
+            settled: Vec::new(),
             taken: FxHashSet::default(),
         }
     }

@@ -96,9 +96,7 @@ impl Geometry<'_> {
                 };
                 Ok(Curve::Offset { basis, distance, reference })
             }
-            kw if is_surface_curve(kw) => {
-                self.surface_curve(ix, args)
-            }
+            kw if is_surface_curve(kw) => self.surface_curve(ix, args),
             Kw::Pcurve | Kw::BoundedPcurve | Kw::DegeneratePcurve | Kw::EvaluatedDegeneratePcurve => {
                 let (surface_ix, curve) = self.pcurve(ix)?;
                 let surface = self.surface(surface_ix)?;
@@ -302,7 +300,8 @@ impl Geometry<'_> {
         }
         if is_surface_curve(kw) {
             let space = args.reference();
-            let bounded = space.and_then(|space| self.nested(ix, |geometry| geometry.bounded_or_whole(space)));
+            let bounded =
+                space.and_then(|space| self.nested(ix, |geometry| geometry.bounded_or_whole(space)));
             return bounded.or_else(|_| self.whole(ix));
         }
         self.whole(ix)

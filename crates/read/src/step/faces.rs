@@ -237,60 +237,6 @@ impl Builder<'_> {
         Err(self.doc.bad(ix, "is defined by itself"))
     }
 
-    fn ends(&self, coedge: &Coedge) -> (VertexId, VertexId) {
-        let edge = &self.part.edges[coedge.edge.index()];
-        if coedge.forward { (edge.start, edge.end) } else { (edge.end, edge.start) }
-    }
-
-    /// Makes each coedge start where the one before ends: vertices at one place become one, a coedge that fits only
-    /// the other way round is turned. What still does not fit is left to the loop's reader, with a warning.
-    fn mend_chain(&mut self, ix: Ix, coedges: &mut [Coedge]) {
-        let count = coedges.len();
-        let broken = |this: &Self, coedges: &[Coedge]| {
-            (0..count).filter(|&i| this.ends(&coedges[i]).1 != this.ends(&coedges[(i + 1) % count]).0).count()
-        };
-        let before = broken(self, coedges);
-        if before == 0 {
-            return;
-        }
-        for i in 0..count {
-            let [previous, next] = [(i + count - 1) % count, (i + 1) % count].map(|k| self.ends(&coedges[k]));
-            let (start, end) = self.ends(&coedges[i]);
-            if count > 1 && start != previous.1 && end != next.0 && (end == previous.1 || start == next.0) {
-                coedges[i].forward = !coedges[i].forward;
-                if broken(self, coedges) >= before {
-                    coedges[i].forward = !coedges[i].forward;
-                }
-            }
-        }
-        let after = broken(self, coedges);
-        if after < before {
-            self.doc.warn(ix, "an edge of the loop runs against the others; it is turned round");
-        }
-        self.close_gaps(ix, coedges);
-    }
-
-    /// Merges the vertices where consecutive coedges meet in one place but not in one vertex.
-    fn close_gaps(&mut self, ix: Ix, coedges: &[Coedge]) {
-        let points: Vec<DVec3> = coedges.iter().map(|c| self.point_of(self.ends(c).0)).collect();
-        let size = points.iter().map(|p| p.distance(points[0])).fold(0.0, f64::max);
-        let stated = self.part.uncertainty.unwrap_or(0.0).min(1e-3 * size);
-        let tolerance = stated.max(1e-6 * size);
-        let mut widest = 0.0f64;
-        for i in 0..coedges.len() {
-            let (a, b) = (self.ends(&coedges[i]).1, self.ends(&coedges[(i + 1) % coedges.len()]).0);
-            let gap = self.point_of(a).distance(self.point_of(b));
-            if gap <= tolerance {
-                self.merge(a, b);
-            } else {
-                widest = widest.max(gap);
-            }
-        }
-        if widest > 0.0 {
-            self.doc.warn(ix, format!("consecutive edges of the loop are {widest:.3e} apart"));
-        }
-    }
-
     /// A FACE without a surface: the plane of its polygons.
     fn polygon_face(&mut self, ix: Ix, bounds: &[Ix]) -> Res<Trimmed> {
         let loops = bounds.iter().map(|&bound| self.bound(bound, ix)).collect::<Res<Vec<_>>>()?;

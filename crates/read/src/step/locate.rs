@@ -85,7 +85,8 @@ fn on_open(curve: &Curve, start: DVec3, end: DVec3, same_vertex: bool, same_sens
         // Its ends do not meet, yet it is said to be closed: all of it is meant.
         return Some(Located { range: domain, swapped: !same_sense, contradicted: false });
     }
-    let mut t = [start, end].map(|vertex| if bounded { snapped(curve, vertex) } else { parameter_of(curve, vertex) });
+    let mut t =
+        [start, end].map(|vertex| if bounded { snapped(curve, vertex) } else { parameter_of(curve, vertex) });
     if bounded && t[0] == t[1] {
         // A tiny edge at the curve's end.
         t = [start, end].map(|vertex| parameter_of(curve, vertex));

@@ -9,6 +9,7 @@ mod bodies;
 mod bounded;
 mod bspline;
 mod builder;
+mod chain;
 mod curves;
 mod curves_2d;
 mod document;
