@@ -57,7 +57,7 @@ pub(crate) fn at_rate<V: Vector>(jet: Jet3<V>, rate: f64) -> Jet3<V> {
 /// Brings `t` into `start..=end` by whole periods; values inside stay as they are.
 pub(crate) fn wrapped(t: f64, start: f64, end: f64) -> f64 {
     let period = end - start;
-    if (t >= start && t <= end) || !(period > 0.0) || !t.is_finite() {
+    if (t >= start && t <= end) || period.is_nan() || period <= 0.0 || !t.is_finite() {
         return t;
     }
     (t - ((t - start) / period).floor() * period).clamp(start, end)

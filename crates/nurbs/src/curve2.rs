@@ -260,7 +260,7 @@ const SHAPE: f64 = 1e-12;
 fn scaled_axes(frame: &Frame2, a: f64, b: f64, by: DVec2) -> Option<(Frame2, f64, f64)> {
     let (x, y) = (frame.x * by, frame.y * by);
     let (lx, ly) = (x.length(), y.length());
-    if !(lx > 0.0) || !(ly > 0.0) || x.dot(y).abs() > SHAPE * lx * ly {
+    if !lx.is_normal() || !ly.is_normal() || x.dot(y).abs() > SHAPE * lx * ly {
         return None;
     }
     Some((Frame2 { origin: frame.origin * by, x: x / lx, y: y / ly }, a * lx, b * ly))

@@ -42,6 +42,7 @@ mod zoo;
 pub use bezier::{BezierCurve, BezierPatch};
 pub use bounds::{Ball, Piece, SurfaceBounds, Wrap};
 pub use box3::Box3;
+pub use convert::{NurbsParameters, ParameterMap};
 pub use curve::{CompositeSegment, Curve, CurveJet};
 pub use curve2::{Curve2, Curve2Jet};
 pub use error::NurbsError;

@@ -10,7 +10,7 @@ const PIECES: usize = 8;
 impl Curve {
     /// A box that contains the curve over `range`: exact for lines, conics and polylines, close for others.
     pub fn bbox(&self, range: Range) -> Box3 {
-        if !(range.start <= range.end) {
+        if range.start.is_nan() || range.end.is_nan() || range.start > range.end {
             return Box3::EMPTY;
         }
         let mut stops = vec![range.start];

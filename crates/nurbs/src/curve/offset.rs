@@ -9,7 +9,7 @@ use glam::DVec3;
 /// With P = I − nnᵀ: n' = P w'/|w| and n'' = P w''/|w| − 2 n'(n·w')/|w| − n |n'|².
 pub(crate) fn unit_jet(w: DVec3, w1: DVec3, w2: DVec3) -> Option<[DVec3; 3]> {
     let length = w.length();
-    if !(length > 0.0) || !length.is_finite() {
+    if length == 0.0 || !length.is_finite() {
         return None;
     }
     let n = w / length;

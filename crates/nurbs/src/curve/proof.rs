@@ -24,7 +24,7 @@ impl Curve {
     pub fn chord_error(&self, t0: f64, t1: f64) -> f64 {
         let range = Range::new(t0.min(t1), t0.max(t1));
         let h = 0.5 * range.length();
-        if !(h > 0.0) {
+        if h.is_nan() || h == 0.0 {
             return if h == 0.0 { 0.0 } else { f64::INFINITY };
         }
         let middle = 0.5 * (t0 + t1);
@@ -236,7 +236,7 @@ fn offset_bound(basis: &Curve, distance: f64, reference: DVec3, order: usize, ra
                 let grow = |k: usize| basis.derivative_bound(k + 1, piece) * size;
                 let least = basis.jet(middle).d1.cross(reference).length() - grow(1) * 0.5 * piece.length();
                 // A cusp, unless shorter pieces show otherwise.
-                if !(least > 0.0) {
+                if least.is_nan() || least <= 0.0 {
                     return f64::INFINITY;
                 }
                 let a = grow(1) / least;

@@ -80,7 +80,7 @@ fn axes(frame: &Frame, a: f64, b: f64, by: &DAffine3) -> Option<(Frame, f64, f64
     let x = by.transform_vector3(frame.x);
     let y = by.transform_vector3(frame.y);
     let (lx, ly) = (x.length(), y.length());
-    if !(lx > 0.0) || !(ly > 0.0) || x.dot(y).abs() > SHAPE * lx * ly {
+    if !lx.is_normal() || !ly.is_normal() || x.dot(y).abs() > SHAPE * lx * ly {
         return None;
     }
     let (x, y) = (x / lx, y / ly);
