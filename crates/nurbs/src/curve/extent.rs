@@ -76,10 +76,10 @@ fn nurbs_box(whole: &Curve, curve: &NurbsCurve3, range: Range) -> Box3 {
         for i in 0..PIECES {
             let at = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / PIECES as f64 + shift;
             let own = Range::new(curve.domain().clamp(at(i)), curve.domain().clamp(at(i + 1)));
-            if own.length() > 0.0 {
-                if let Ok(piece) = curve.piece(own) {
-                    found = piece.points().iter().fold(found, |b, p| b.including(*p));
-                }
+            if own.length() > 0.0
+                && let Ok(piece) = curve.piece(own)
+            {
+                found = piece.points().iter().fold(found, |b, p| b.including(*p));
             }
         }
     }

@@ -163,7 +163,7 @@ fn axis_touches(profile: &Curve, origin: DVec3, axis: DVec3, tolerance: f64) -> 
             continue;
         }
         let t =
-            if radii[i] <= tolerance { samples[i] } else { lowest(&radius, samples[before], samples[after]) };
+            if radii[i] <= tolerance { samples[i] } else { lowest(radius, samples[before], samples[after]) };
         let known = |f: &f64| (f - t).abs() <= 1e-6 * range.length();
         if radius(t) <= tolerance && !found.iter().any(known) {
             found.push(t);
@@ -203,10 +203,8 @@ pub(super) fn limit_normal(surface: &Surface, p_uv: DVec2) -> Option<DVec3> {
     let (a, b) = (du.length() * size.x, dv.length() * size.y);
     // One derivative is tiny beside the other: the point is on, or all but on, a collapsed line.
     let regular = a.min(b) > FLAT * a.max(b);
-    if regular {
-        if let Some(n) = unit_cross(du, dv) {
-            return Some(n);
-        }
+    if regular && let Some(n) = unit_cross(du, dv) {
+        return Some(n);
     }
     let inward = |axis: usize| {
         let middle = if domain.is_finite() { domain.center()[axis] } else { p_uv[axis] + 0.5 };
