@@ -117,6 +117,11 @@ impl<'a> SurfaceBounds<'a> {
         self.domain
     }
 
+    /// The surface at a point of the chart.
+    pub fn point(&self, p_uv: DVec2) -> DVec3 {
+        self.surface.point(self.wrap.apply(p_uv))
+    }
+
     /// False where nothing can be proven: weights that are not positive, offsets of free surfaces.
     pub fn is_bounded(&self) -> bool {
         !matches!(self.prepared, Prepared::Unknown)

@@ -134,7 +134,21 @@ impl<'a> Prover<'a> {
         Facet {
             uv: corners.map(|v| work.mesh.points[v as usize]),
             xyz: corners.map(|v| work.xyz[v as usize]),
-            boundary: work.mesh.neighbors[t as usize].map(|n| n == NONE),
+            sag: std::array::from_fn(|i| Self::sag(work, t, i)),
+        }
+    }
+
+    /// The sagitta of the edge opposite corner `i`, where it is a chord of a model edge.
+    fn sag(work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<f64> {
+        if work.mesh.neighbors[t as usize][i] != NONE {
+            return None;
+        }
+        let corners = work.mesh.triangles[t as usize];
+        match work.segment(corners[(i + 1) % 3], corners[(i + 2) % 3]) {
+            Some(Segment::Edge { edge, chord }) => {
+                Some(work.context.edges[edge as usize].sag[chord as usize])
+            }
+            _ => None,
         }
     }
 
@@ -142,7 +156,7 @@ impl<'a> Prover<'a> {
         if self.sampled {
             sampled_bound(work, facet)
         } else {
-            facet_bound(self.bounds, facet, &mut self.scratch)
+            facet_bound(self.bounds, facet, self.limits.tolerance, &mut self.scratch)
         }
     }
 
@@ -158,9 +172,10 @@ impl<'a> Prover<'a> {
         }
         let facet = Self::facet(work, t);
         let bound = self.bound(work, &facet);
+        let boundary = work.mesh.neighbors[t as usize].map(|n| n == NONE);
         let tolerance = self.limits.tolerance;
         if bound.error > tolerance {
-            let coarse = (0..3).filter(|&i| facet.boundary[i] && bound.edges[i] > tolerance);
+            let coarse = (0..3).filter(|&i| boundary[i] && bound.edges[i] > tolerance);
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
@@ -170,7 +185,7 @@ impl<'a> Prover<'a> {
             let length =
                 work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);
             if turns_too_far(n, m, self.limits.angle) || length > self.limits.length * (1.0 + 1e-9) {
-                let fault = if facet.boundary[i] { Fault::Edge(i) } else { Fault::Inside(Some(i)) };
+                let fault = if boundary[i] { Fault::Edge(i) } else { Fault::Inside(Some(i)) };
                 return (bound.error, fault);
             }
         }
@@ -246,21 +261,15 @@ impl<'a> Prover<'a> {
             if !work.mesh.can_flip(apex, a, b, apex2) {
                 continue;
             }
-            let outer = [work.mesh.neighbors[t as usize], work.mesh.neighbors[other as usize]];
-            let facet = |corners: [u32; 3], boundary: [bool; 3]| Facet {
+            let outer = [t, other].map(|t| std::array::from_fn::<_, 3, _>(|i| Self::sag(work, t, i)));
+            let facet = |corners: [u32; 3], sag: [Option<f64>; 3]| Facet {
                 uv: corners.map(|v| work.mesh.points[v as usize]),
                 xyz: corners.map(|v| work.xyz[v as usize]),
-                boundary,
+                sag,
             };
             // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
-            let first = facet(
-                [apex, a, apex2],
-                [outer[1][(j + 1) % 3] == NONE, false, outer[0][(i + 2) % 3] == NONE],
-            );
-            let second = facet(
-                [apex, apex2, b],
-                [outer[1][(j + 2) % 3] == NONE, outer[0][(i + 1) % 3] == NONE, false],
-            );
+            let first = facet([apex, a, apex2], [outer[1][(j + 1) % 3], None, outer[0][(i + 2) % 3]]);
+            let second = facet([apex, apex2, b], [outer[1][(j + 2) % 3], outer[0][(i + 1) % 3], None]);
             let turn =
                 turns_too_far(work.normals[apex as usize], work.normals[apex2 as usize], self.limits.angle);
             let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;

@@ -1,0 +1,226 @@
+//! Facets of any smooth surface, by enclosures of its second derivatives.
+//!
+//! Notation: T the triangle in parameter space with corners p_i, L the affine map of T onto the facet, S the surface,
+//! n the facet's unit normal, d_ij = p_j − p_i, λ barycentric coordinates, e = S − L (zero at the corners).
+//!
+//! **Along n.** For a quadratic f = n·S the error of linear interpolation is exactly −½ Σ_{i<j} λ_i λ_j h_ij with
+//! h_ij = D²f\[d_ij, d_ij\]. For any other f the second derivatives are split into a middle (treated so) and a
+//! deviation r over T (which adds at most ⅛(r_uu R_u² + 2 r_uv R_u R_v + r_vv R_v²), R the extent of T; this follows
+//! from Taylor's formula with integral remainder and Σ λ_i (u − u_i)² ≤ R_u²/4). Where that is not enough, e is evaluated
+//! on a lattice of k² small triangles and only what lies between its points is bounded so: k² times less.
+//!
+//! **Sideways.** The image of an edge of T bends sideways by at most τ (the same formula for the in-plane normal m of the
+//! edge). A bend along an inner edge only shifts surface from one facet's side to its neighbour's; along a boundary edge the
+//! face ends at its curve, which lies within the sagitta of the chord. What either can cost is the slope of S
+//! against the facet times the shift. Where the slope is large the error is √(N² + τ²).
+
+use super::{Facet, FacetBound, lattice};
+use crate::{Piece, SurfaceBounds, UvBox};
+use glam::{DVec2, DVec3};
+
+/// Second derivatives of w·S over the pieces: the middle of the enclosure and how far it reaches, for uu, uv, vv.
+#[derive(Clone, Copy)]
+struct Form {
+    middle: [f64; 3],
+    reach: [f64; 3],
+}
+
+impl Form {
+    fn new(pieces: &[Piece], w: DVec3) -> Self {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for piece in pieces {
+            let (value, reach) = piece.along(w);
+            for i in 0..3 {
+                low[i] = low[i].min(value[i] - reach[i]);
+                high[i] = high[i].max(value[i] + reach[i]);
+            }
+        }
+        Self {
+            middle: std::array::from_fn(|i| 0.5 * (low[i] + high[i])),
+            reach: std::array::from_fn(|i| 0.5 * (high[i] - low[i])),
+        }
+    }
+
+    fn middle_along(&self, d: DVec2) -> f64 {
+        self.middle[0] * d.x * d.x + 2.0 * self.middle[1] * d.x * d.y + self.middle[2] * d.y * d.y
+    }
+
+    fn reach_along(&self, d: DVec2) -> f64 {
+        self.reach[0] * d.x * d.x + 2.0 * self.reach[1] * (d.x * d.y).abs() + self.reach[2] * d.y * d.y
+    }
+}
+
+/// The largest |½ Σ_{i<j} λ_i λ_j h_ij| over the triangle: on an edge, or at the critical point inside.
+fn largest_quadratic(h: [f64; 3]) -> f64 {
+    // h[i] belongs to the edge opposite corner i.
+    let [c, b, a] = h;
+    let on_edges = a.abs().max(b.abs()).max(c.abs()) / 8.0;
+    let weights = [c * (a + b - c), b * (a + c - b), a * (b + c - a)];
+    let inside = weights.iter().all(|&w| w > 0.0) || weights.iter().all(|&w| w < 0.0);
+    let sum = weights[0] + weights[1] + weights[2];
+    if inside && sum != 0.0 { on_edges.max((a * b * c / (2.0 * sum)).abs()) } else { on_edges }
+}
+
+/// What all stages of one bound share.
+struct Frame3 {
+    n: DVec3,
+    /// In-plane normals of the edges, pointing outwards.
+    m: [DVec3; 3],
+    d: [DVec2; 3],
+    length: [f64; 3],
+    height: [f64; 3],
+    area2: f64,
+    size: DVec2,
+    /// What jumps of the first derivative cost, at most.
+    kinks: f64,
+    kink: DVec2,
+}
+
+/// Bounds along the normal and sideways, of the facet and its edges.
+struct Parts {
+    along: f64,
+    along_edges: [f64; 3],
+    sideways: [f64; 3],
+}
+
+pub(super) fn bound(
+    bounds: &SurfaceBounds<'_>,
+    facet: &Facet,
+    enough: f64,
+    pieces: &mut Vec<Piece>,
+) -> FacetBound {
+    let uv = facet.uv;
+    let uv_box = UvBox::from_points(uv);
+    pieces.clear();
+    let kink = bounds.pieces(uv_box, pieces);
+    let sides = [facet.xyz[2] - facet.xyz[1], facet.xyz[0] - facet.xyz[2], facet.xyz[1] - facet.xyz[0]];
+    let cross = sides[0].cross(sides[1]);
+    let Some(n) = cross.try_normalize() else { return FacetBound::NONE };
+    if pieces.is_empty() {
+        return FacetBound::NONE;
+    }
+    let size = uv_box.size();
+    let length = sides.map(DVec3::length);
+    let frame = Frame3 {
+        n,
+        m: std::array::from_fn(|i| sides[i].cross(n) / length[i]),
+        d: [uv[2] - uv[1], uv[0] - uv[2], uv[1] - uv[0]],
+        length,
+        height: length.map(|l| cross.length() / l),
+        area2: cross.length(),
+        size,
+        // A jump J of the first derivative somewhere inside costs interpolation at most J·R/4.
+        kinks: 0.25 * (kink.x * size.x + kink.y * size.y),
+        kink,
+    };
+    let normal = Form::new(pieces, n);
+    let h = frame.d.map(|d| normal.middle_along(d));
+    let slope = slope(&normal, &frame, &h);
+    let sideways = frame.m.map(|m| Form::new(pieces, m));
+    let quick = quick_parts(&frame, &normal, &h, &sideways);
+    let bound = combine(facet, &quick, slope);
+    // Without the deviations it would do: then it is worth looking closer.
+    if bound.error <= enough || largest_quadratic(h) > 1.02 * enough {
+        return bound;
+    }
+    let mut best = bound;
+    for parts in [4, 8, 16] {
+        let (closer, seen) = sampled_parts(bounds, facet, &frame, &normal, &sideways, parts);
+        let bound = combine(facet, &closer, slope);
+        best.error = best.error.min(bound.error);
+        best.edges = std::array::from_fn(|i| best.edges[i].min(bound.edges[i]));
+        if best.error <= enough || seen > enough {
+            break;
+        }
+    }
+    best
+}
+
+/// From the second derivatives alone.
+fn quick_parts(frame: &Frame3, normal: &Form, h: &[f64; 3], forms: &[Form; 3]) -> Parts {
+    let d = &frame.d;
+    let along = largest_quadratic(*h) + normal.reach_along(frame.size) / 8.0 + frame.kinks;
+    let along_edges = std::array::from_fn(|i| (h[i].abs() + normal.reach_along(d[i])) / 8.0 + frame.kinks);
+    let sideways = std::array::from_fn(|i| {
+        let t = d.map(|d| forms[i].middle_along(d));
+        let own = (t[i].abs() + forms[i].reach_along(d[i])) / 8.0;
+        // Inside T the other two edges' terms are outweighed by the distance from this edge, unless T is very flat.
+        let others =
+            0.5 * (t[(i + 1) % 3].abs() + t[(i + 2) % 3].abs()) + 0.5 * forms[i].reach_along(frame.size);
+        own + frame.kinks + (others - frame.height[i]).max(0.0)
+    });
+    Parts { along, along_edges, sideways }
+}
+
+/// With the error evaluated on a lattice; also returns the largest value seen along the normal.
+fn sampled_parts(
+    bounds: &SurfaceBounds<'_>,
+    facet: &Facet,
+    frame: &Frame3,
+    normal: &Form,
+    forms: &[Form; 3],
+    parts: usize,
+) -> (Parts, f64) {
+    let scale = 1.0 / (parts * parts) as f64;
+    let between = |form: &Form| {
+        let worst = frame.d.iter().fold(0.0f64, |m, &d| m.max(form.middle_along(d).abs()));
+        (worst / 6.0 + form.reach_along(frame.size) / 8.0) * scale + frame.kinks / parts as f64
+    };
+    let mut seen = 0.0f64;
+    let mut edges = [0.0f64; 3];
+    let mut sideways = [0.0f64; 3];
+    for w in lattice(parts) {
+        let blend = |p: [DVec3; 3]| p[0] * w[0] + p[1] * w[1] + p[2] * w[2];
+        let uv = facet.uv[0] * w[0] + facet.uv[1] * w[1] + facet.uv[2] * w[2];
+        let e = bounds.point(uv) - blend(facet.xyz);
+        let along = e.dot(frame.n).abs();
+        seen = seen.max(along);
+        for i in 0..3 {
+            let out = e.dot(frame.m[i]);
+            sideways[i] = sideways[i].max(out - frame.height[i] * w[i]);
+            if w[i] == 0.0 {
+                edges[i] = edges[i].max(along);
+                sideways[i] = sideways[i].max(out.abs());
+            }
+        }
+    }
+    let rest = between(normal);
+    let parts = Parts {
+        along: seen + rest,
+        along_edges: edges.map(|e| e + rest),
+        sideways: std::array::from_fn(|i| sideways[i] + between(&forms[i])),
+    };
+    (parts, seen)
+}
+
+/// Joins what was bounded along the normal and sideways.
+fn combine(facet: &Facet, parts: &Parts, slope: f64) -> FacetBound {
+    let mut error = parts.along;
+    let mut edges = [0.0; 3];
+    for i in 0..3 {
+        let shift = parts.sideways[i] + facet.sag[i].unwrap_or(0.0);
+        let leaning = if slope < 0.5 { parts.along + 2.0 * slope * shift } else { f64::INFINITY };
+        error = error.max(leaning.min(parts.along.hypot(shift)));
+        edges[i] = parts.along_edges[i];
+    }
+    FacetBound { error, edges }
+}
+
+/// Bounds the slope of S over the facet: f = n·S has a derivative along side ij of at most
+/// ½ max(|h_ij|, |h_jk − h_ik|) plus its deviation; two sides give the gradient.
+fn slope(normal: &Form, frame: &Frame3, h: &[f64; 3]) -> f64 {
+    let Frame3 { d, length, size, kink, area2, .. } = frame;
+    let along = |i: usize| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let reach = (normal.reach[0] * size.x + normal.reach[1] * size.y) * d[i].x.abs()
+            + (normal.reach[1] * size.x + normal.reach[2] * size.y) * d[i].y.abs();
+        let jump = kink.x * d[i].x.abs() + kink.y * d[i].y.abs();
+        (0.5 * h[i].abs().max((h[j] - h[k]).abs()) + reach + jump) / length[i]
+    };
+    (0..3).fold(f64::INFINITY, |best, i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let sine = area2 / (length[j] * length[k]);
+        best.min((along(j) + along(k)) / sine)
+    })
+}
