@@ -16,9 +16,7 @@ pub enum ReadError {
     NoData { name: String, line: u32 },
     #[error("{name} has no entities in its DATA section (line {line})")]
     NoEntities { name: String, line: u32 },
-    #[error(
-        "{name} holds no faces and nothing else that has a shape ({entities} entities read; first problem: {problem})"
-    )]
+    #[error("{name} holds no shape in its {entities} entities ({problem})")]
     NothingInIt { name: String, entities: usize, problem: String },
     #[error("{source_entity}: {message}")]
     Entity { source_entity: Source, message: String },

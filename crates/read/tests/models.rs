@@ -81,7 +81,7 @@ fn every_face_arrives() {
 fn sound(name: &str, model: &Model, wrong: &mut Vec<String>) {
     for part in &model.parts {
         for edge in &part.edges {
-            if !(edge.range.start < edge.range.end) || !edge.range.is_finite() {
+            if edge.range.start >= edge.range.end || !edge.range.is_finite() {
                 wrong.push(format!("{name} {}: range {:?}", edge.source, edge.range));
             }
             if edge.curve.is_none() && edge.start != edge.end {
@@ -129,7 +129,7 @@ fn edges_end_in_their_vertices() {
                 for (t, vertex) in ends {
                     let gap = curve.point(t).distance(part.vertices[vertex.index()].point);
                     let allowed = (0.1 * size).max(part.uncertainty.unwrap_or(0.0) * 100.0);
-                    if !(gap <= allowed) {
+                    if gap > allowed || gap.is_nan() {
                         wrong.push(format!("{name} {}: {gap:e} off, edge of {size:e}", edge.source));
                     }
                 }

@@ -55,6 +55,11 @@ impl<'d> Args<'d> {
     fn bad(&self, expected: &str) -> Bad {
         let found: String = self.bytes[self.at..].iter().take(24).map(|&b| char::from(b)).collect();
         let found = found.split([',', '\n', '\r']).next().unwrap_or_default().trim_end();
+        if found.is_empty() || found.starts_with(')') {
+            return self
+                .doc
+                .bad(self.ix, format!("attribute {} is missing: it should be {expected}", self.taken));
+        }
         self.doc.bad(self.ix, format!("attribute {} is not {expected} but {found:?}", self.taken))
     }
 
@@ -191,8 +196,15 @@ impl<'d> Args<'d> {
         match self.next() {
             Kind::Number => self.number_here(),
             Kind::Typed => {
+                let start = self.at;
                 let mut inner = self.typed_here().1;
-                if inner.kind() == Kind::Number { inner.number_here() } else { Err(inner.bad("a number")) }
+                if inner.kind() == Kind::Number {
+                    return inner.number_here();
+                }
+                self.at = start;
+                let bad = self.bad("a number");
+                self.pass();
+                Err(bad)
             }
             _ => Err(self.bad("a number")),
         }

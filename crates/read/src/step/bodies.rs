@@ -163,7 +163,7 @@ impl Builder<'_> {
                 Kw::OrientedClosedShell | Kw::OrientedOpenShell => {
                     args.skip(2);
                     at = args.reference()?;
-                    flipped = flipped != !args.logical(true);
+                    flipped = flipped == args.logical(true);
                 }
                 Kw::ClosedShell
                 | Kw::OpenShell
@@ -266,6 +266,7 @@ fn is_surface(kw: Kw) -> bool {
             | Kw::UniformSurface
             | Kw::QuasiUniformSurface
             | Kw::BezierSurface
+            | Kw::PiecewiseBezierSurface
             | Kw::OffsetSurface
             | Kw::OrientedSurface
             | Kw::RectangularTrimmedSurface
@@ -291,6 +292,7 @@ fn is_curve(kw: Kw) -> bool {
             | Kw::UniformCurve
             | Kw::QuasiUniformCurve
             | Kw::BezierCurve
+            | Kw::PiecewiseBezierCurve
             | Kw::OffsetCurve3d
             | Kw::SurfaceCurve
             | Kw::SeamCurve

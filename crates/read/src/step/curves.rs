@@ -1,7 +1,7 @@
 //! Curves in space.
 
 use super::args::{Args, Kind};
-use super::bspline::Knots;
+use super::bspline::{Knots, replace_zero_weights};
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
@@ -16,11 +16,21 @@ pub(crate) struct BoundedCurve {
     pub forward: bool,
 }
 
+/// The parts of a spline curve as an entity states them.
+#[derive(Clone, Debug)]
+pub(crate) struct SplineCurve {
+    pub degree: usize,
+    pub points: Vec<Ix>,
+    pub knots: Knots,
+    pub weights: Option<Vec<f64>>,
+}
+
 /// Which spline leaves a complex instance has.
-const SPLINES: [(Kw, fn() -> Knots); 4] = [
+const SPLINES: [(Kw, fn() -> Knots); 5] = [
     (Kw::UniformCurve, || Knots::Uniform),
     (Kw::QuasiUniformCurve, || Knots::QuasiUniform),
     (Kw::BezierCurve, || Knots::Bezier),
+    (Kw::PiecewiseBezierCurve, || Knots::Bezier),
     (Kw::BSplineCurve, || Knots::QuasiUniform),
 ];
 
@@ -182,13 +192,13 @@ impl Geometry<'_> {
     }
 
     fn spline_curve(&mut self, ix: Ix) -> Res<Curve> {
-        let (degree, list, knots, weights) = self.spline_curve_data(ix)?;
-        let points = self.points(list)?;
+        let SplineCurve { degree, points, knots, weights } = self.spline_curve_data(ix)?;
+        let points = self.points(points)?;
         Ok(Curve::Nurbs(self.checked_spline(ix, degree, knots, points, weights)?))
     }
 
-    /// Degree, control points, knots and weights of any spline curve, simple or complex.
-    pub(crate) fn spline_curve_data(&self, ix: Ix) -> Res<(usize, Vec<Ix>, Knots, Option<Vec<f64>>)> {
+    /// The attributes of any spline curve, simple or complex.
+    pub(crate) fn spline_curve_data(&self, ix: Ix) -> Res<SplineCurve> {
         let doc = self.doc;
         let args = doc.open(ix)?;
         if doc.kw(ix) != Kw::Complex {
@@ -205,7 +215,7 @@ impl Geometry<'_> {
                     None => return Err(doc.bad(ix, "is not a curve that this reader knows")),
                 },
             };
-            return Ok((degree, points, knots, None));
+            return Ok(SplineCurve { degree, points, knots, weights: None });
         }
         let leaves = args.leaves();
         let leaf = |kw| leaves.iter().find(|(name, _)| *name == kw).map(|(_, args)| args.clone());
@@ -221,7 +231,7 @@ impl Geometry<'_> {
                 .map_or(Knots::QuasiUniform, |(_, knots)| knots()),
         };
         let weights = leaf(Kw::RationalBSplineCurve).map(|mut args| args.reals()).transpose()?;
-        Ok((degree, points, knots, weights))
+        Ok(SplineCurve { degree, points, knots, weights })
     }
 
     /// A valid spline, or a sentence that says why not.
@@ -245,7 +255,10 @@ impl Geometry<'_> {
         if vector.repaired() {
             self.doc.warn(ix, "an end knot's multiplicity is over the degree + 1; control points without effect are left out");
         }
-        let (points, weights) = (vector.trim(points), weights.map(|weights| vector.trim(weights)));
+        let (points, mut weights) = (vector.trim(points), weights.map(|weights| vector.trim(weights)));
+        if weights.as_deref_mut().is_some_and(replace_zero_weights) {
+            self.doc.warn(ix, "a weight is zero; replaced by one too small to matter");
+        }
         NurbsCurve::new(degree, vector.knots, points, weights).map_err(|error| self.doc.bad(ix, error))
     }
 

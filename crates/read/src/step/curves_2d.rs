@@ -1,6 +1,6 @@
 //! Curves in the parameter space of a surface (pcurves).
 
-use super::curves::Trim;
+use super::curves::{SplineCurve, Trim};
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
@@ -105,8 +105,8 @@ impl Geometry<'_> {
             Kw::TrimmedCurve => return self.trimmed2(ix),
             Kw::CompositeCurve => self.composite2(ix)?,
             _ => {
-                let (degree, list, knots, weights) = self.spline_curve_data(ix)?;
-                let points = self.points2(list)?;
+                let SplineCurve { degree, points, knots, weights } = self.spline_curve_data(ix)?;
+                let points = self.points2(points)?;
                 Curve2::Nurbs(self.checked_spline(ix, degree, knots, points, weights)?)
             }
         };

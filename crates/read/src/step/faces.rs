@@ -42,13 +42,14 @@ impl Builder<'_> {
     }
 
     fn face_at(&mut self, ix: Ix, how: &FaceUse, depth: u32) -> FaceId {
-        if self.doc.kw(ix) == Kw::OrientedFace && depth < MAX_FACE_DEPTH {
-            if let Ok(mut args) = self.doc.open(ix) {
-                args.skip(2);
-                if let Ok(element) = args.reference() {
-                    let flipped = how.flipped != !args.logical(true);
-                    return self.face_at(element, &FaceUse { flipped, ..how.clone() }, depth + 1);
-                }
+        if self.doc.kw(ix) == Kw::OrientedFace
+            && depth < MAX_FACE_DEPTH
+            && let Ok(mut args) = self.doc.open(ix)
+        {
+            args.skip(2);
+            if let Ok(element) = args.reference() {
+                let flipped = how.flipped == args.logical(true);
+                return self.face_at(element, &FaceUse { flipped, ..how.clone() }, depth + 1);
             }
         }
         let mut name = String::new();

@@ -126,6 +126,8 @@ keywords! {
     Pcurve = "PCURVE",
     PlaneAngleMeasureWithUnit = "PLANE_ANGLE_MEASURE_WITH_UNIT",
     PlaneAngleUnit = "PLANE_ANGLE_UNIT",
+    PiecewiseBezierCurve = "PIECEWISE_BEZIER_CURVE",
+    PiecewiseBezierSurface = "PIECEWISE_BEZIER_SURFACE",
     Plane = "PLANE",
     PointOnCurve = "POINT_ON_CURVE",
     PointOnSurface = "POINT_ON_SURFACE",

@@ -61,10 +61,10 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let products = Products::read(&doc);
     let mut tree = Tree::new(&doc, &styles, &products);
     tree.unfold();
-    if tree.roots.is_empty() {
+    if tree.parts.is_empty() {
         let problem = tree
             .first_problem()
-            .map_or_else(|| "no representation has a shape".to_owned(), |bad| bad.to_string());
+            .map_or_else(|| "no representation lists one".to_owned(), |bad| bad.to_string());
         return Err(ReadError::NothingInIt { name: name.to_owned(), entities: doc.entries.len(), problem });
     }
     let Tree { parts, nodes, roots, unit, .. } = tree;

@@ -44,9 +44,9 @@ pub(crate) struct Products {
 
 impl Products {
     pub(crate) fn read(doc: &Doc<'_>) -> Self {
-        let mut products = Self::default();
-        products.definitions =
-            doc.all(|kw| matches!(kw, Kw::ProductDefinition | Kw::ProductDefinitionWithAssociatedDocuments));
+        let is_definition =
+            |kw| matches!(kw, Kw::ProductDefinition | Kw::ProductDefinitionWithAssociatedDocuments);
+        let mut products = Self { definitions: doc.all(is_definition), ..Self::default() };
         products.read_shapes(doc);
         products.read_usages(doc);
         let placing = products.read_placements(doc);

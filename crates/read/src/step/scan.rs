@@ -210,7 +210,10 @@ impl Scanner<'_> {
             }
         }
         if !ended && in_data {
-            self.warn(0, "the file ends before its DATA section does; what is complete was read");
+            self.warn(
+                0,
+                "the file is truncated: it ends before its DATA section does; what is complete was read",
+            );
         }
     }
 
@@ -307,7 +310,7 @@ impl Scanner<'_> {
         let offset = self.at as u64;
         match self.record() {
             End::OfFile => {
-                self.warn(id, "the file ends within this entity; it is left out");
+                self.warn(id, "the file is truncated within this entity; it is left out");
                 return;
             }
             End::Early => self.warn(id, "a closing parenthesis is missing"),
@@ -394,10 +397,7 @@ impl Scanner<'_> {
 /// The position behind the quote that closes the string whose content starts at `at`; `None` where the string runs
 /// into the next entity (a line that starts with `#digits=`).
 pub(crate) fn string_end(bytes: &[u8], at: usize, quote: u8) -> Option<usize> {
-    let length = match memchr(quote, &bytes[at..]) {
-        Some(length) => length,
-        None => return None,
-    };
+    let length = memchr(quote, &bytes[at..])?;
     let content = &bytes[at..at + length];
     let runs_over = memchr_iter(b'\n', content).any(|newline| starts_instance(&content[newline + 1..]));
     (!runs_over).then_some(at + length + 1)

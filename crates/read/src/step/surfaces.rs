@@ -1,7 +1,7 @@
 //! Surfaces.
 
 use super::args::{Args, Kind};
-use super::bspline::Knots;
+use super::bspline::{Knots, replace_zero_weights};
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
@@ -16,10 +16,11 @@ struct SplineSurface {
     weights: Option<Vec<Vec<f64>>>,
 }
 
-const FORMS: [(Kw, fn() -> Knots); 4] = [
+const FORMS: [(Kw, fn() -> Knots); 5] = [
     (Kw::UniformSurface, || Knots::Uniform),
     (Kw::QuasiUniformSurface, || Knots::QuasiUniform),
     (Kw::BezierSurface, || Knots::Bezier),
+    (Kw::PiecewiseBezierSurface, || Knots::Bezier),
     (Kw::BSplineSurface, || Knots::QuasiUniform),
 ];
 
@@ -79,7 +80,8 @@ impl Geometry<'_> {
         if radius < 0.0 {
             return Err(self.doc.bad(ix, format!("the radius is negative ({radius})")));
         }
-        if !(half_angle.abs() < 1.5707) {
+        // Within 1e-4 of a plane a cone is none.
+        if half_angle.abs() > std::f64::consts::FRAC_PI_2 - 1e-4 {
             return Err(self.doc.bad(ix, format!("the half angle is {half_angle} radians")));
         }
         if half_angle == 0.0 {
@@ -101,7 +103,7 @@ impl Geometry<'_> {
             knots[1].vector(degree[1], count_v).map_err(bad)?,
         ];
         let trim = |rows: Vec<Vec<f64>>| flatten(&vectors, rows);
-        let weights = match weights {
+        let mut weights = match weights {
             Some(w) if w.len() != rows.len() || w.iter().any(|row| row.len() != count_v) => {
                 return Err(bad("the weights do not fit the control net".into()));
             }
@@ -109,6 +111,9 @@ impl Geometry<'_> {
         };
         if vectors.iter().any(|vector| vector.repaired()) {
             self.doc.warn(ix, "an end knot's multiplicity is over the degree + 1; control points without effect are left out");
+        }
+        if weights.as_deref_mut().is_some_and(replace_zero_weights) {
+            self.doc.warn(ix, "a weight is zero; replaced by one too small to matter");
         }
         let points = flatten(&vectors, std::mem::take(&mut rows));
         let [u, v] = vectors;

@@ -11,11 +11,42 @@ use super::units::Units;
 use chordal_brep::{Color, Node, NodeId, Part, PartId, Source};
 use chordal_nurbs::{DAffine3, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
 
 /// A tree that unfolds to more nodes than this is cut off.
 const MAX_NODES: usize = 1_000_000;
 /// Assemblies nest a few dozen levels at most.
-const MAX_DEPTH: usize = 100;
+const MAX_DEPTH: usize = 256;
+
+/// A representation as the tree needs it, read once.
+#[derive(Debug)]
+struct Shape {
+    name: String,
+    /// Items other than mapped ones.
+    items: Vec<Ix>,
+    mapped: Vec<Ix>,
+    context: Option<Ix>,
+    /// Millimetres per unit; of the place of use where there is no context.
+    mm: Option<f64>,
+}
+
+/// A product as the tree needs it, read once.
+#[derive(Debug)]
+struct Product {
+    name: String,
+    /// Its representations with their transformations to the first one.
+    shapes: Vec<(Ix, DAffine3)>,
+    mm: Option<f64>,
+}
+
+/// A mapped item: what it copies, where to.
+#[derive(Debug)]
+struct Copy {
+    name: String,
+    shape: Ix,
+    transform: DAffine3,
+    mm: f64,
+}
 
 /// Parts and nodes under construction.
 #[derive(Debug)]
@@ -31,6 +62,12 @@ pub(crate) struct Tree<'d> {
     units: FxHashMap<Ix, Units>,
     /// The part of a representation; none where it holds no geometry of its own.
     part_of: FxHashMap<Ix, Option<PartId>>,
+    shapes: FxHashMap<Ix, Option<Rc<Shape>>>,
+    known_products: FxHashMap<Ix, Rc<Product>>,
+    /// By mapped item; none where it is broken.
+    copies: FxHashMap<Ix, Option<Rc<Copy>>>,
+    /// Transformations of usages.
+    usages: FxHashMap<Ix, DAffine3>,
     /// Representations that the tree has reached.
     reached: FxHashSet<Ix>,
     /// Products and representations between the root and here.
@@ -50,6 +87,10 @@ impl<'d> Tree<'d> {
             unit: None,
             units: FxHashMap::default(),
             part_of: FxHashMap::default(),
+            shapes: FxHashMap::default(),
+            known_products: FxHashMap::default(),
+            copies: FxHashMap::default(),
+            usages: FxHashMap::default(),
             reached: FxHashSet::default(),
             path: Vec::new(),
             cut_off: false,
@@ -93,7 +134,8 @@ impl<'d> Tree<'d> {
             }
             return;
         }
-        let scale = DAffine3::from_scale(DVec3::splat(self.product_mm(definition, 1.0)));
+        let mm = self.product_info(definition).mm.unwrap_or(1.0);
+        let scale = DAffine3::from_scale(DVec3::splat(mm));
         self.nodes[id.index()].transform = scale;
         self.roots.push(id);
     }
@@ -109,19 +151,41 @@ impl<'d> Tree<'d> {
         units
     }
 
-    /// Millimetres per unit of a representation; `otherwise` where it has no context.
-    fn rep_mm(&mut self, rep: Ix, otherwise: f64) -> f64 {
-        match Representation::read(self.doc, rep) {
-            Ok(Representation { context: Some(context), .. }) => self.units_of(Some(context)).length_mm,
-            _ => otherwise,
+    /// A representation, read once; none where it cannot be read.
+    fn shape(&mut self, rep: Ix) -> Option<Rc<Shape>> {
+        if let Some(known) = self.shapes.get(&rep) {
+            return known.clone();
         }
+        let shape = match Representation::read(self.doc, rep) {
+            Ok(Representation { name, items, context }) => {
+                let (mapped, items) = items.into_iter().partition(|&item| is_mapped(self.doc, item));
+                let mm = context.map(|context| self.units_of(Some(context)).length_mm);
+                Some(Rc::new(Shape { name, items, mapped, context, mm }))
+            }
+            Err(bad) => {
+                self.doc.warn_bad(&bad);
+                None
+            }
+        };
+        self.shapes.insert(rep, shape.clone());
+        shape
     }
 
-    fn product_mm(&mut self, definition: Ix, otherwise: f64) -> f64 {
-        match self.products.shapes.get(&definition).and_then(|shapes| shapes.first()).copied() {
-            Some(rep) => self.rep_mm(rep, otherwise),
-            None => otherwise,
+    /// Millimetres per unit of a representation; `otherwise` where it does not say.
+    fn rep_mm(&mut self, rep: Ix, otherwise: f64) -> f64 {
+        self.shape(rep).and_then(|shape| shape.mm).unwrap_or(otherwise)
+    }
+
+    fn product_info(&mut self, definition: Ix) -> Rc<Product> {
+        if let Some(known) = self.known_products.get(&definition) {
+            return known.clone();
         }
+        let name = Products::name(self.doc, definition);
+        let shapes = self.shape_of(definition);
+        let mm = shapes.first().and_then(|&(rep, _)| self.shape(rep)).and_then(|shape| shape.mm);
+        let product = Rc::new(Product { name, shapes, mm });
+        self.known_products.insert(definition, product.clone());
+        product
     }
 
     fn new_node(&mut self, name: String, ix: Ix) -> Option<NodeId> {
@@ -150,8 +214,13 @@ impl<'d> Tree<'d> {
 
     /// Enters an entity on the way down; false where it is already on the way, or the way is too long.
     fn enter(&mut self, ix: Ix) -> bool {
-        if self.path.contains(&ix) || self.path.len() >= MAX_DEPTH {
+        if self.path.contains(&ix) {
             self.doc.warn(ix, "the assembly contains itself; cut off here");
+            return false;
+        }
+        if self.path.len() >= MAX_DEPTH {
+            self.doc
+                .warn(ix, format!("the assembly is nested more than {MAX_DEPTH} levels deep; cut off here"));
             return false;
         }
         self.path.push(ix);
@@ -163,12 +232,12 @@ impl<'d> Tree<'d> {
         if !self.enter(definition) {
             return None;
         }
-        let name = Products::name(self.doc, definition);
-        let id = self.new_node(name.clone(), definition);
+        let product = self.product_info(definition);
+        let id = self.new_node(product.name.clone(), definition);
         if let Some(id) = id {
-            let mm = self.product_mm(definition, parent_mm);
-            for (rep, to_product) in self.shape_of(definition) {
-                self.attach(id, rep, to_product, mm, &name);
+            let mm = product.mm.unwrap_or(parent_mm);
+            for &(rep, to_product) in &product.shapes {
+                self.attach(id, rep, to_product, mm, &product.name);
             }
             let usages = self.products.usages.get(&definition).map_or(&[][..], Vec::as_slice);
             for usage in usages {
@@ -232,22 +301,24 @@ impl<'d> Tree<'d> {
     }
 
     /// True where the child's item is listed only by the parent and the parent's only by the child.
-    fn crossed(&self, child: Ix, parent: Ix, ours: Ix, theirs: Ix) -> bool {
-        let lists = |rep: Ix, item: Ix| {
-            Representation::read(self.doc, rep).is_ok_and(|rep| rep.items.contains(&item))
-        };
+    fn crossed(&mut self, child: Ix, parent: Ix, ours: Ix, theirs: Ix) -> bool {
+        let (Some(child), Some(parent)) = (self.shape(child), self.shape(parent)) else { return false };
         ours != theirs
-            && !lists(child, ours)
-            && lists(parent, ours)
-            && lists(child, theirs)
-            && !lists(parent, theirs)
+            && !child.items.contains(&ours)
+            && parent.items.contains(&ours)
+            && child.items.contains(&theirs)
+            && !parent.items.contains(&theirs)
     }
 
     /// One use of a product in another.
     fn component(&mut self, parent: NodeId, usage: &Usage, parent_definition: Ix, parent_mm: f64) {
         let Some(id) = self.product(usage.child, parent_mm) else { return };
-        let child_mm = self.product_mm(usage.child, parent_mm);
-        let transform = self.usage_transform(usage, parent_definition, child_mm, parent_mm);
+        let child_mm = self.product_info(usage.child).mm.unwrap_or(parent_mm);
+        let transform = match self.usages.get(&usage.ix) {
+            Some(&known) => known,
+            None => self.usage_transform(usage, parent_definition, child_mm, parent_mm),
+        };
+        self.usages.insert(usage.ix, transform);
         let color = self.usage_color(usage);
         let node = &mut self.nodes[id.index()];
         node.transform = transform;
@@ -265,11 +336,11 @@ impl<'d> Tree<'d> {
             self.doc.warn(usage.ix, "nothing places this component; it is put at the origin");
             return unplaced;
         };
-        let of_child: Vec<Ix> = self.shape_of(usage.child).into_iter().map(|(rep, _)| rep).collect();
-        let of_parent: Vec<Ix> = self.shape_of(parent).into_iter().map(|(rep, _)| rep).collect();
+        let (of_child, of_parent) = (self.product_info(usage.child), self.product_info(parent));
+        let has = |product: &Product, rep: Ix| product.shapes.iter().any(|(known, _)| *known == rep);
         // Usually the first representation is the child's; some writers have it the other way round.
-        let second = (of_child.contains(&relation.rep_2) && !of_parent.contains(&relation.rep_2))
-            || (!of_child.contains(&relation.rep_1) && of_parent.contains(&relation.rep_1));
+        let second = (has(&of_child, relation.rep_2) && !has(&of_parent, relation.rep_2))
+            || (!has(&of_child, relation.rep_1) && has(&of_parent, relation.rep_1));
         let child = if second { relation.rep_2 } else { relation.rep_1 };
         match self.relation_transform(&relation, child) {
             Ok(transform) => transform,
@@ -298,77 +369,83 @@ impl<'d> Tree<'d> {
             return;
         }
         self.reached.insert(rep);
-        match Representation::read(self.doc, rep) {
-            Ok(read) => self.attach_items(id, rep, &read, to_node, mm, name),
-            Err(bad) => self.doc.warn_bad(&bad),
+        if let Some(shape) = self.shape(rep) {
+            self.attach_items(id, rep, &shape, to_node, mm, name);
         }
         self.path.pop();
     }
 
-    fn attach_items(
-        &mut self,
-        id: NodeId,
-        rep: Ix,
-        read: &Representation,
-        to_node: DAffine3,
-        mm: f64,
-        name: &str,
-    ) {
-        let part = self.part(rep, read, name);
-        let own_mm = read.context.map_or(mm, |context| self.units_of(Some(context)).length_mm);
+    fn attach_items(&mut self, id: NodeId, rep: Ix, shape: &Shape, to_node: DAffine3, mm: f64, name: &str) {
+        let part = self.part(rep, shape, name);
+        let own_mm = shape.mm.unwrap_or(mm);
         let plain = to_node == DAffine3::IDENTITY && own_mm == mm;
         let mut target = id;
-        let mapped: Vec<Ix> = read.items.iter().copied().filter(|&item| is_mapped(self.doc, item)).collect();
         let taken = part.is_some() && self.nodes[id.index()].part.is_some();
-        if taken || (!plain && (part.is_some() || !mapped.is_empty())) {
-            let Some(child) = self.new_node(read.name.clone(), rep) else { return };
-            self.nodes[child.index()].transform = to_node;
+        if taken || (!plain && (part.is_some() || !shape.mapped.is_empty())) {
+            let Some(child) = self.new_node(shape.name.clone(), rep) else { return };
+            self.nodes[child.index()].transform =
+                to_node * DAffine3::from_scale(DVec3::splat(scale_left(to_node, own_mm, mm)));
             self.nodes[id.index()].children.push(child);
             target = child;
         }
         if part.is_some() {
             self.nodes[target.index()].part = part;
         }
-        for item in mapped {
-            if let Err(bad) = self.mapped(target, item, own_mm, name) {
-                self.doc.warn_bad(&bad);
-            }
+        for &item in &shape.mapped {
+            self.mapped(target, item, own_mm, name);
         }
     }
 
-    /// MAPPED_ITEM(name, source, target): a copy of another representation.
-    fn mapped(&mut self, parent: NodeId, ix: Ix, parent_mm: f64, name: &str) -> Res<()> {
+    /// MAPPED_ITEM: a copy of another representation.
+    fn mapped(&mut self, parent: NodeId, ix: Ix, parent_mm: f64, name: &str) {
+        let Some(copy) = self.copy(ix, parent_mm) else { return };
+        let name = if copy.name.is_empty() { name } else { &copy.name };
+        let Some(id) = self.new_node(name.to_owned(), ix) else { return };
+        let node = &mut self.nodes[id.index()];
+        node.transform = copy.transform;
+        node.color = self.styles.colors.get(&ix).copied();
+        self.nodes[parent.index()].children.push(id);
+        self.attach(id, copy.shape, DAffine3::IDENTITY, copy.mm, name);
+    }
+
+    fn copy(&mut self, ix: Ix, parent_mm: f64) -> Option<Rc<Copy>> {
+        if let Some(known) = self.copies.get(&ix) {
+            return known.clone();
+        }
+        let copy = match self.read_copy(ix, parent_mm) {
+            Ok(copy) => Some(Rc::new(copy)),
+            Err(bad) => {
+                self.doc.warn_bad(&bad);
+                None
+            }
+        };
+        self.copies.insert(ix, copy.clone());
+        copy
+    }
+
+    /// MAPPED_ITEM(name, source, target) of a REPRESENTATION_MAP(origin, representation).
+    fn read_copy(&mut self, ix: Ix, parent_mm: f64) -> Res<Copy> {
+        let complex = self.doc.kw(ix) == Kw::Complex;
         let mut args = self.doc.leaf(ix, Kw::MappedItem)?;
-        let own_name = args.string();
+        let name = if complex { String::new() } else { args.string() };
         let map = args.reference()?;
         let target = args.reference()?;
         let mut args = self.doc.leaf(map, Kw::RepresentationMap)?;
         let origin = args.reference()?;
-        let rep = args.reference()?;
-        let mm = self.rep_mm(rep, parent_mm);
-        let transform = transforms::between(
-            self.doc,
-            Side { item: origin, length_mm: mm },
-            Side { item: target, length_mm: parent_mm },
-        )?;
-        let Some(id) = self.new_node(if own_name.is_empty() { name.to_owned() } else { own_name }, ix) else {
-            return Ok(());
-        };
-        self.nodes[id.index()].transform = transform;
-        self.nodes[id.index()].color = self.styles.colors.get(&ix).copied();
-        self.nodes[parent.index()].children.push(id);
-        self.attach(id, rep, DAffine3::IDENTITY, mm, name);
-        Ok(())
+        let shape = args.reference()?;
+        let mm = self.rep_mm(shape, parent_mm);
+        let from = Side { item: origin, length_mm: mm };
+        let transform = transforms::between(self.doc, from, Side { item: target, length_mm: parent_mm })?;
+        Ok(Copy { name, shape, transform, mm })
     }
 
     /// The part of a representation, built once.
-    fn part(&mut self, rep: Ix, read: &Representation, name: &str) -> Option<PartId> {
+    fn part(&mut self, rep: Ix, shape: &Shape, name: &str) -> Option<PartId> {
         if let Some(&known) = self.part_of.get(&rep) {
             return known;
         }
-        let name = if name.is_empty() { read.name.clone() } else { name.to_owned() };
-        let items: Vec<Ix> = read.items.iter().copied().filter(|&item| !is_mapped(self.doc, item)).collect();
-        let part = self.build_part(&items, read.context, name, self.doc.source(rep));
+        let name = if name.is_empty() { shape.name.clone() } else { name.to_owned() };
+        let part = self.build_part(&shape.items, shape.context, name, self.doc.source(rep));
         if let Some(part) = part {
             self.parts[part.index()].color = self.styles.colors.get(&rep).copied();
         }
@@ -400,15 +477,19 @@ impl<'d> Tree<'d> {
     fn orphans(&mut self, auxiliary: bool) {
         let doc = self.doc;
         let candidates = doc.all(|kw| !matches!(kw, Kw::CartesianPoint | Kw::Direction | Kw::OrientedEdge));
+        let copied = copied(doc);
         let reps: Vec<Ix> = candidates.into_iter().filter(|&ix| is_shape(doc, ix)).collect();
         for rep in reps {
+            if !auxiliary && copied.contains(&rep) {
+                continue;
+            }
             if self.reached.contains(&rep) || (!auxiliary && self.products.auxiliary.contains(&rep)) {
                 continue;
             }
-            let Ok(read) = Representation::read(doc, rep) else { continue };
+            let Some(shape) = self.shape(rep) else { continue };
             let before = self.nodes.len();
-            let Some(id) = self.new_node(read.name.clone(), rep) else { return };
-            let mm = self.rep_mm(rep, 1.0);
+            let Some(id) = self.new_node(shape.name.clone(), rep) else { return };
+            let mm = shape.mm.unwrap_or(1.0);
             self.attach(id, rep, DAffine3::IDENTITY, mm, "");
             let node = &mut self.nodes[id.index()];
             if node.part.is_none() && node.children.is_empty() {
@@ -461,6 +542,22 @@ impl<'d> Tree<'d> {
     pub(crate) fn first_problem(&self) -> Option<Bad> {
         self.doc.first_warning().map(|warning| Bad::new(warning.source, warning.message))
     }
+}
+
+/// The scale still missing where representations of different units are one: relations carry it already.
+fn scale_left(to_node: DAffine3, own_mm: f64, mm: f64) -> f64 {
+    if to_node == DAffine3::IDENTITY { own_mm / mm } else { 1.0 }
+}
+
+/// Representations that mapped items copy: they have no place of their own.
+fn copied(doc: &Doc<'_>) -> FxHashSet<Ix> {
+    let maps = doc.all(|kw| kw == Kw::RepresentationMap).into_iter();
+    let copied = maps.filter_map(|map| {
+        let mut args = doc.open(map).ok()?;
+        args.skip(1);
+        args.optional_reference()
+    });
+    copied.collect()
 }
 
 fn is_mapped(doc: &Doc<'_>, ix: Ix) -> bool {
