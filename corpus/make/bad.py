@@ -40,7 +40,7 @@ def header_only(path: Path) -> None:
     save(path, plain(path.stem).split("DATA;")[0])
 
 
-@bad_case("no_shape", "entities, but no shape", exit="2", phrase="no shape")
+@bad_case("no_shape", "entities, but no shape", exit="2", phrase="no faces")
 def no_shape(path: Path) -> None:
     s = Step(path.stem)
     s.product("nothing")
@@ -48,14 +48,14 @@ def no_shape(path: Path) -> None:
 
 
 @bad_case("truncated_tail", "cut off after the shell: the solid is missing, its faces can be saved", exit="0,1",
-          phrase="truncated")
+          phrase="ends before")
 def truncated_tail(path: Path) -> None:
     text = plain(path.stem)
     save(path, text[:text.index("MANIFOLD_SOLID_BREP") + 12])
 
 
 @bad_case("truncated_middle", "cut off in the middle of an entity, half of the faces are there", exit="0,1",
-          phrase="truncated")
+          phrase="ends before")
 def truncated_middle(path: Path) -> None:
     text = plain(path.stem)
     cut = [m.start() for m in re.finditer("ADVANCED_FACE", text)][4]
