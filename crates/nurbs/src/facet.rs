@@ -61,8 +61,6 @@ pub fn facet_bound(
     };
     for i in 0..3 {
         if let Some(sag) = facet.sag[i] {
-            // The chord is this near to a curve of the surface, so no bound of the edge needs to be larger.
-            bound.edges[i] = bound.edges[i].min(sag);
             bound.error = bound.error.max(sag);
         }
     }

@@ -37,12 +37,16 @@ const PROBES: usize = 4;
 /// across it by any height.
 const DOUBLY_CURVED_CHORD: f64 = 0.9;
 
+/// Chords use this share of the tolerance: the bound of a facet over a chord is never quite as tight as the chord's own.
+const CHORD_AIM: f64 = 0.985;
+
 /// A kink of the tangent of more than this (radians) is a corner, and a corner is a vertex.
 const CORNER: f64 = 1e-3;
 
 impl EdgeSamples {
     /// Samples an edge with at least `least` chords.
     pub fn new(part: &Part, edge: &Edge, uses: &[EdgeUse<'_, '_>], limits: &Limits, least: usize) -> Self {
+        let limits = &Limits { tolerance: CHORD_AIM * limits.tolerance, ..*limits };
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
             return Self { t: vec![edge.range.start], points: vec![ends[0]], sag: Vec::new(), fewest: 0.0 };

@@ -10,9 +10,9 @@
 //! on a lattice of k² small triangles and only what lies between its points is bounded so: k² times less.
 //!
 //! **Sideways.** The image of an edge of T bends sideways by at most τ (the same formula for the in-plane normal m of the
-//! edge). A bend along an inner edge only shifts surface from one facet's side to its neighbour's; along a boundary edge the
-//! face ends at its curve, which lies within the sagitta of the chord. What either can cost is the slope of S
-//! against the facet times the shift. Where the slope is large the error is √(N² + τ²).
+//! edge). A bend along an inner edge only shifts surface from one facet's side to its neighbour's: what it can cost is the slope
+//! of S against the facet times the shift; where the slope is large the error is √(N² + τ²). At a boundary edge the face ends
+//! at its curve: the lens between it and the image of the chord lies as near to the edge as the farther of the two.
 
 use super::{Facet, FacetBound, lattice};
 use crate::{Piece, SurfaceBounds, UvBox};
@@ -81,7 +81,10 @@ struct Frame3 {
 struct Parts {
     along: f64,
     along_edges: [f64; 3],
+    /// How far the image of T reaches over each edge, or falls short of it.
     sideways: [f64; 3],
+    /// How far the image of each edge bends.
+    bends: [f64; 3],
 }
 
 pub(super) fn bound(
@@ -142,15 +145,17 @@ fn quick_parts(frame: &Frame3, normal: &Form, h: &[f64; 3], forms: &[Form; 3]) -
     let d = &frame.d;
     let along = largest_quadratic(*h) + normal.reach_along(frame.size) / 8.0 + frame.kinks;
     let along_edges = std::array::from_fn(|i| (h[i].abs() + normal.reach_along(d[i])) / 8.0 + frame.kinks);
+    let bends: [f64; 3] = std::array::from_fn(|i| {
+        (forms[i].middle_along(d[i]).abs() + forms[i].reach_along(d[i])) / 8.0 + frame.kinks
+    });
     let sideways = std::array::from_fn(|i| {
         let t = d.map(|d| forms[i].middle_along(d));
-        let own = (t[i].abs() + forms[i].reach_along(d[i])) / 8.0;
         // Inside T the other two edges' terms are outweighed by the distance from this edge, unless T is very flat.
         let others =
             0.5 * (t[(i + 1) % 3].abs() + t[(i + 2) % 3].abs()) + 0.5 * forms[i].reach_along(frame.size);
-        own + frame.kinks + (others - frame.height[i]).max(0.0)
+        bends[i] + (others - frame.height[i]).max(0.0)
     });
-    Parts { along, along_edges, sideways }
+    Parts { along, along_edges, sideways, bends }
 }
 
 /// With the error evaluated on a lattice; also returns the largest value seen along the normal.
@@ -169,7 +174,7 @@ fn sampled_parts(
     };
     let mut seen = 0.0f64;
     let mut edges = [0.0f64; 3];
-    let mut sideways = [0.0f64; 3];
+    let (mut sideways, mut bends) = ([0.0f64; 3], [0.0f64; 3]);
     for w in lattice(parts) {
         let blend = |p: [DVec3; 3]| p[0] * w[0] + p[1] * w[1] + p[2] * w[2];
         let uv = facet.uv[0] * w[0] + facet.uv[1] * w[1] + facet.uv[2] * w[2];
@@ -181,15 +186,20 @@ fn sampled_parts(
             sideways[i] = sideways[i].max(out - frame.height[i] * w[i]);
             if w[i] == 0.0 {
                 edges[i] = edges[i].max(along);
-                sideways[i] = sideways[i].max(out.abs());
+                bends[i] = bends[i].max(out.abs());
             }
         }
     }
-    let rest = between(normal);
+    let between_on_edge = |form: &Form, i: usize| {
+        (form.middle_along(frame.d[i]).abs() + form.reach_along(frame.d[i])) / 8.0 * scale
+            + frame.kinks / parts as f64
+    };
+    let bends = std::array::from_fn(|i| bends[i] + between_on_edge(&forms[i], i));
     let parts = Parts {
-        along: seen + rest,
-        along_edges: edges.map(|e| e + rest),
-        sideways: std::array::from_fn(|i| sideways[i] + between(&forms[i])),
+        along: seen + between(normal),
+        along_edges: std::array::from_fn(|i| edges[i] + between_on_edge(normal, i)),
+        sideways: std::array::from_fn(|i| (sideways[i] + between(&forms[i])).max(bends[i])),
+        bends,
     };
     (parts, seen)
 }
@@ -197,12 +207,16 @@ fn sampled_parts(
 /// Joins what was bounded along the normal and sideways.
 fn combine(facet: &Facet, parts: &Parts, slope: f64) -> FacetBound {
     let mut error = parts.along;
-    let mut edges = [0.0; 3];
+    let mut edges = parts.along_edges;
     for i in 0..3 {
-        let shift = parts.sideways[i] + facet.sag[i].unwrap_or(0.0);
+        let shift = parts.sideways[i];
         let leaning = if slope < 0.5 { parts.along + 2.0 * slope * shift } else { f64::INFINITY };
         error = error.max(leaning.min(parts.along.hypot(shift)));
-        edges[i] = parts.along_edges[i];
+        if facet.sag[i].is_some() {
+            // The image of the chord and the boundary curve both lie near the edge, which is convex: so does what is between.
+            edges[i] = edges[i].hypot(parts.bends[i]);
+            error = error.max(edges[i]);
+        }
     }
     FacetBound { error, edges }
 }
