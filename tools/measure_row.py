@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from dataclasses import dataclass, field
 
 # Measured distances carry the other kernel's rounding: this much of the diagonal is forgiven.
@@ -52,6 +54,7 @@ class Row:
     diagonal: float | None = None
     verify_error: str = ""
     notes: list[str] = field(default_factory=list)
+    reasons: Counter[str] = field(default_factory=Counter)
 
     @property
     def measured(self) -> float | None:
@@ -113,8 +116,9 @@ def add_report(row: Row, report: dict) -> None:
     row.inconsistent_edges = report["inconsistent_edges"]
     row.shells_closed = report["shells"]["closed_in_file"]
     row.shells_watertight = report["shells"]["watertight"]
-    row.notes += [f"{f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}"
-                  for f in faces["failed"]]
+    for f in faces["failed"]:
+        row.notes.append(f"{f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}")
+        row.reasons[f"{f['kind']}: {re.sub(r'[-#0-9.e+]*[0-9]', '…', f['reason'])}"] += f["instances"]
     row.notes += [f"zero area: {f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}"
                   for f in faces["zero_area"]]
     row.notes += report["undone"]

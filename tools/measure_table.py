@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
@@ -19,7 +20,7 @@ def write_tables(rows: Sequence[Row], results: Path, described: str) -> None:
 
 
 def tsv(rows: Sequence[Row]) -> str:
-    names = [f.name for f in fields(Row) if f.name != "notes"]
+    names = [f.name for f in fields(Row) if f.name not in ("notes", "reasons")]
     lines = ["\t".join([*names, *PROMISES])]
     for row in rows:
         values = ["" if (v := getattr(row, name)) is None else str(v).replace("\t", " ") for name in names]
@@ -102,6 +103,9 @@ def totals(rows: Sequence[Row]) -> list[str]:
              f"- measured error over tolerance: {geometric(errors):.3f} in the geometric mean, "
              f"{max(errors, default=math.nan):.3f} at most",
              f"- seconds: {sum(r.seconds for r in rows):.1f}"]
+    reasons = sum((r.reasons for r in meshed), Counter())
+    by_count = sorted(reasons.items(), key=lambda item: (-item[1], item[0]))
+    lines[2:2] = [f"  - {count} × {reason}" for reason, count in by_count[:20]]
     for name, meaning in PROMISES.items():
         kept = [r.promises()[name] for r in rows]
         lines.append(f"- {meaning}: kept {kept.count(True)}, broken {kept.count(False)}, not judged {kept.count(None)}")
