@@ -138,3 +138,52 @@ fn edges_end_in_their_vertices() {
     }
     assert!(wrong.len() <= 10, "{}\n{}", wrong.len(), wrong[..wrong.len().min(40)].join("\n"));
 }
+
+/// The distances of an edge's points from a face's surface: directly, and through the file's own pcurve.
+#[test]
+fn edges_lie_on_their_faces() {
+    let Some(folder) = folder() else { return };
+    // Loose by nature; see the test above.
+    let loose = ["bug25013_25013face.stp", "bug32314_corrupted.stp", "trj3_s1-al-214.stp"];
+    let (mut uses, mut off, mut pcurves, mut disagreeing) = (0, Vec::new(), 0, Vec::new());
+    for entry in std::fs::read_dir(folder.join("step")).expect("the folder is readable").flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if loose.contains(&name.as_str()) {
+            continue;
+        }
+        let model = chordal_read::read_file(entry.path()).expect("readable");
+        for part in &model.parts {
+            for face in &part.faces {
+                let FaceGeometry::Surface(surface) = &face.geometry else { continue };
+                for boundary in &face.loops {
+                    let Loop::Edges { coedges, .. } = boundary else { continue };
+                    for coedge in coedges {
+                        let edge = &part.edges[coedge.edge.index()];
+                        let Some(curve) = &edge.curve else { continue };
+                        let at = |k: usize| edge.range.start + edge.range.length() * k as f64 / 4.0;
+                        let points: Vec<_> = (0..5).map(|k| curve.point(at(k))).collect();
+                        let size = points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+                        uses += 1;
+                        let gaps = points.iter().map(|&p| surface.point(surface.invert(p, None)).distance(p));
+                        let gap = gaps.fold(0.0, f64::max);
+                        if gap > 0.02 * size + part.uncertainty.unwrap_or(0.0) * 10.0 {
+                            off.push(format!("{name} {} on {}: {gap:e} off, size {size:e}", edge.source, face.source));
+                        }
+                        for pcurve in &coedge.pcurves {
+                            pcurves += 1;
+                            let along = |k: usize| pcurve.range.start + pcurve.range.length() * k as f64 / 4.0;
+                            let gaps = (0..5).map(|k| surface.point(pcurve.curve.point(along(k))).distance(points[k]));
+                            let gap = gaps.fold(0.0, f64::max);
+                            if gap > 0.02 * size + part.uncertainty.unwrap_or(0.0) * 10.0 {
+                                disagreeing.push(format!("{name} {} on {}: pcurve {gap:e} off, size {size:e}", edge.source, face.source));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{uses} uses, {} off; {pcurves} pcurves, {} disagree", off.len(), disagreeing.len());
+    assert!(off.len() * 1000 <= uses, "{}\n{}", off.len(), off[..off.len().min(60)].join("\n"));
+    assert!(disagreeing.len() * 50 <= pcurves, "{}\n{}", disagreeing.len(), disagreeing[..disagreeing.len().min(60)].join("\n"));
+}

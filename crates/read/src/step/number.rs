@@ -15,39 +15,23 @@ pub(crate) fn parse(text: &[u8]) -> Option<(f64, usize)> {
     if matches!(text.first(), Some(b'-' | b'+')) {
         at = 1;
     }
-    let mut mantissa = 0u64;
-    let mut digits = 0usize;
-    let mut scale = 0i64;
-    let mut any = false;
-    let mut whole = |at: &mut usize, step: i64| {
-        while let Some(d) = text.get(*at).map(|b| b.wrapping_sub(b'0')).filter(|&d| d < 10) {
-            any = true;
-            if digits < 19 {
-                mantissa = mantissa * 10 + u64::from(d);
-                digits += usize::from(mantissa != 0);
-                scale += step;
-            } else {
-                digits += 1;
-                scale += step + 1;
-            }
-            *at += 1;
-        }
-    };
-    whole(&mut at, 0);
+    let start = at;
+    let mut digits = Digits::default();
+    let mut any = digits.take(text, &mut at, 0);
     if text.get(at) == Some(&b'.') {
         at += 1;
-        whole(&mut at, -1);
+        any |= digits.take(text, &mut at, -1);
     }
     if !any {
         return None;
     }
     let exponent = exponent(text, &mut at);
-    let power = scale.saturating_add(exponent);
-    let value = if digits <= 19 && mantissa < (1 << 53) && power.unsigned_abs() <= 22 {
+    let power = digits.scale.saturating_add(exponent);
+    let value = if digits.exact && digits.mantissa < (1 << 53) && power.unsigned_abs() <= 22 {
         let factor = EXACT_POWERS[power.unsigned_abs() as usize];
-        if power < 0 { mantissa as f64 / factor } else { mantissa as f64 * factor }
+        if power < 0 { digits.mantissa as f64 / factor } else { digits.mantissa as f64 * factor }
     } else {
-        slow(text, at)
+        slow(&text[start..at])
     };
     Some((if negative { -value } else { value }, at))
 }
@@ -71,16 +55,77 @@ fn exponent(text: &[u8], at: &mut usize) -> i64 {
     if negative { -value } else { value }
 }
 
-/// The absolute value of the number that fills `text[..end]`.
-fn slow(text: &[u8], end: usize) -> f64 {
-    let mut clean = String::with_capacity(end + 1);
-    for &b in &text[..end] {
-        match b {
-            b'd' | b'D' => clean.push('e'),
-            b'-' if clean.is_empty() => {}
-            _ => clean.push(char::from(b)),
+/// Digits read so far: `mantissa · 10^scale`, trailing zeros kept apart so that `48.0000000000000000` stays small.
+struct Digits {
+    mantissa: u64,
+    scale: i64,
+    /// Zeros behind the mantissa's last digit that count only if another digit follows.
+    zeros: u32,
+    /// The mantissa holds all digits.
+    exact: bool,
+}
+
+impl Default for Digits {
+    fn default() -> Self {
+        Self { mantissa: 0, scale: 0, zeros: 0, exact: true }
+    }
+}
+
+impl Digits {
+    /// Takes the digits at `at`, each worth `step` powers of ten less than the one before (0 before the point, -1
+    /// behind it); false where there are none.
+    fn take(&mut self, text: &[u8], at: &mut usize, step: i64) -> bool {
+        let start = *at;
+        while let Some(d) = text.get(*at).map(|b| b.wrapping_sub(b'0')).filter(|&d| d < 10) {
+            *at += 1;
+            if d == 0 {
+                self.zeros += 1;
+            } else {
+                self.push(u64::from(d));
+            }
+            self.scale += step;
+        }
+        if step == 0 {
+            // Zeros before the point belong to the value whether or not digits follow.
+            self.flush();
+        } else {
+            // Trailing zeros behind the point do not: undo their part of the scale.
+            self.scale += i64::from(self.zeros);
+            self.zeros = 0;
+        }
+        *at > start
+    }
+
+    fn push(&mut self, d: u64) {
+        self.flush();
+        match self.mantissa.checked_mul(10).and_then(|m| m.checked_add(d)) {
+            Some(m) => self.mantissa = m,
+            None => self.exact = false,
         }
     }
+
+    /// Puts the pending zeros into the mantissa.
+    fn flush(&mut self) {
+        if self.zeros == 0 {
+            return;
+        }
+        if self.mantissa != 0 {
+            match 10u64.checked_pow(self.zeros).and_then(|p| self.mantissa.checked_mul(p)) {
+                Some(m) => self.mantissa = m,
+                None => self.exact = false,
+            }
+        }
+        self.zeros = 0;
+    }
+}
+
+/// The number that fills `text`, which has no sign.
+fn slow(text: &[u8]) -> f64 {
+    if let Some(value) = std::str::from_utf8(text).ok().and_then(|text| text.parse().ok()) {
+        return value;
+    }
+    // What the standard library does not take: `1.D3`, `1.E`.
+    let mut clean: String = text.iter().map(|&b| if matches!(b, b'd' | b'D') { 'e' } else { char::from(b) }).collect();
     if clean.ends_with(['e', 'E', '+', '-']) {
         clean.push('0');
     }
@@ -107,6 +152,11 @@ mod tests {
             ("0.00000000000000000000000000000123456789012345678", 1.234_567_890_123_456_8e-30),
             ("1e999", f64::INFINITY),
             ("1e-999", 0.0),
+            ("48.00000000000000000", 48.0),
+            ("0.10000000000000000000000000", 0.1),
+            ("1000000000000000000000.", 1e21),
+            ("100.0010", 100.001),
+            ("-0.0000000000000000000", 0.0),
             ("1e99999999999999999999", f64::INFINITY),
         ] {
             assert_eq!(parse(text.as_bytes()), Some((value, text.len())), "{text}");
