@@ -1,7 +1,6 @@
 //! Vertices and edges: one edge for each EDGE_CURVE, one vertex for each VERTEX_POINT, whatever the faces that use them.
 
-use super::builder::{Builder, KnownEdge, SurfaceUse};
-use super::curves::{CURVES, is_surface_curve};
+use super::builder::{Builder, KnownEdge};
 use super::document::{Ix, Res};
 use super::keyword::Kw;
 use super::locate::{self, Located, locate};
@@ -65,7 +64,7 @@ impl Builder<'_> {
         let id = EdgeId::from(self.part.edges.len());
         self.part.edges.push(edge);
         let file_range = own_parameters.then(|| Range::new(range.start / angle, range.end / angle));
-        let pcurves = geometry.map_or_else(|_| Vec::new(), |geometry| self.pcurves(geometry, file_range));
+        let pcurves = geometry.map_or_else(|_| Vec::new(), |geometry| self.pcurves(geometry, id, file_range));
         Ok(KnownEdge { id, swapped: located.is_some_and(|l| l.swapped), pcurves: pcurves.into() })
     }
 
@@ -130,36 +129,5 @@ impl Builder<'_> {
                 format!("a vertex lies {gap:.3e} off the edge's curve, whose length is {length:.3e}"),
             );
         }
-    }
-
-    /// The curves of an edge's geometry in parameter spaces, each over its own range or over the edge's.
-    fn pcurves(&mut self, geometry: Ix, edge_range: Option<Range>) -> Vec<SurfaceUse> {
-        let Ok((kw, mut args)) = self.doc.body(geometry, &CURVES) else { return Vec::new() };
-        let list = match kw {
-            Kw::Pcurve | Kw::BoundedPcurve => vec![geometry],
-            kw if is_surface_curve(kw) => {
-                args.skip(1);
-                args.references_or_warn()
-            }
-            _ => return Vec::new(),
-        };
-        let mut found = Vec::new();
-        for ix in list {
-            // A surface instead of a pcurve only says that the edge lies on it.
-            if !matches!(self.doc.kw(ix), Kw::Pcurve | Kw::BoundedPcurve | Kw::Complex) {
-                continue;
-            }
-            match self.geometry.bounded_pcurve(ix) {
-                Ok((surface, curve, own)) => {
-                    let range = own.or(edge_range).unwrap_or_else(|| curve.domain());
-                    if range.is_finite() && range.start < range.end {
-                        found.push(SurfaceUse { surface, curve: Arc::new(curve), range });
-                    }
-                }
-                Err(bad) if self.doc.kw(ix) != Kw::Complex => self.warn_bad(&bad),
-                Err(_) => {}
-            }
-        }
-        found
     }
 }

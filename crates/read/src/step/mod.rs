@@ -20,6 +20,7 @@ mod header;
 mod keyword;
 mod locate;
 mod number;
+mod pcurves;
 mod placement;
 mod products;
 mod representation;

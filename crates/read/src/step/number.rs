@@ -125,7 +125,8 @@ fn slow(text: &[u8]) -> f64 {
         return value;
     }
     // What the standard library does not take: `1.D3`, `1.E`.
-    let mut clean: String = text.iter().map(|&b| if matches!(b, b'd' | b'D') { 'e' } else { char::from(b) }).collect();
+    let mut clean: String =
+        text.iter().map(|&b| if matches!(b, b'd' | b'D') { 'e' } else { char::from(b) }).collect();
     if clean.ends_with(['e', 'E', '+', '-']) {
         clean.push('0');
     }
