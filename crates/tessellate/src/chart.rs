@@ -59,6 +59,10 @@ pub(crate) struct FaceContext<'a, 's> {
     pub face: &'a Face,
     pub surface: &'a FaceSurface<'s>,
     pub edges: &'a [EdgeSamples],
+    /// Finer edges did not keep the loops from crossing: mesh the face as it is.
+    pub last_resort: bool,
+    /// The last round: take what there is.
+    pub accept: bool,
     /// Points nearer together than this are the same point.
     pub resolution: f64,
 }

@@ -5,7 +5,7 @@ use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Bound, Cancel, Options};
 use crate::place::Rows;
 use crate::prove::{Prover, Verdict};
-use crate::triangulate::{Location, NONE, Triangulation, sweep};
+use crate::triangulate::{Location, NONE, Triangulation, clip_ears, sweep};
 use crate::unroll::{Chart, SEAM_CHORD};
 use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceBounds, UvBox};
 use std::time::Instant;
@@ -95,6 +95,9 @@ impl<'a, 's> FaceWork<'a, 's> {
         let shape = shape(context, limits, UvBox::from_points(points.iter().copied()));
         let triangles = match boundary_triangles(&points, &chart, shape) {
             Ok(triangles) => triangles,
+            Err(_) if context.last_resort && clip_ears(&points, &chart.loops).is_some() => {
+                clip_ears(&points, &chart.loops).unwrap_or_default()
+            }
             Err(culprits) => return finer_or_fail(&chart, &culprits).map(Some),
         };
         let uv_box = UvBox::from_points(points.iter().copied());
@@ -116,7 +119,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         }
         let bounds = SurfaceBounds::new(context.surface.surface, uv_box);
         let deadline = options.face_timeout.map(|t| started + t);
-        let mut prover = Prover::new(&bounds, limits, options, deadline, cancel);
+        let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, context.accept);
         let verdict = prover.refine(&mut work)?;
         match verdict {
             Verdict::Finer(chords) => Ok(Some(Outcome::Finer(chords))),

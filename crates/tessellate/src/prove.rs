@@ -29,6 +29,8 @@ pub(crate) struct Prover<'a> {
     scratch: Vec<Piece>,
     /// Nothing can be bounded on this surface: samples must do.
     sampled: bool,
+    /// The last round: what cannot be mended is accepted and reported with its error.
+    accept: bool,
 }
 
 /// What is wrong with a triangle.
@@ -47,9 +49,10 @@ impl<'a> Prover<'a> {
         options: &'a Options,
         deadline: Option<Instant>,
         cancel: &'a Cancel,
+        accept: bool,
     ) -> Self {
         let sampled = options.bound == Bound::Estimated || !bounds.is_bounded();
-        Self { bounds, limits, options, deadline, cancel, scratch: Vec::new(), sampled }
+        Self { bounds, limits, options, deadline, cancel, scratch: Vec::new(), sampled, accept }
     }
 
     /// Refines until every triangle is within the limits.
@@ -77,6 +80,7 @@ impl<'a> Prover<'a> {
             errors[t as usize] = error;
             match fault {
                 Fault::None => continue,
+                Fault::Edge(_) if self.accept => continue,
                 Fault::Edge(i) => match self.boundary_segment(work, t, i) {
                     Some(Segment::Edge { edge, chord }) => requests.push((edge, chord)),
                     _ => return Ok(Verdict::FinerSeam),
@@ -86,12 +90,18 @@ impl<'a> Prover<'a> {
                         // The face runs again with finer edges: no need to fill it now.
                         continue;
                     }
-                    if work.mesh.triangles.len() > self.options.face_triangles || steps > 64 * budget {
+                    let overdone = steps > budget;
+                    if self.accept && overdone {
+                        continue;
+                    }
+                    if work.mesh.triangles.len() > self.options.face_triangles || overdone {
                         return Err(format!("it needs more than {} triangles", work.mesh.triangles.len()));
                     }
                     if !self.mend(work, t, edge) {
                         match self.coarse_boundary(work, t) {
+                            Some(_) if self.accept => continue,
                             Some(chord) => requests.push(chord),
+                            None if self.accept => continue,
                             None => return Err("a triangle cannot be brought within the tolerance".into()),
                         }
                     }
@@ -111,6 +121,7 @@ impl<'a> Prover<'a> {
         let error = errors.iter().fold(0.0f64, |m, &e| m.max(e));
         let bound = match self.bounds.surface() {
             _ if self.sampled => "sampled",
+            _ if error.is_infinite() => "none",
             Surface::Cylinder { .. } => "cylinder",
             Surface::Cone { .. } => "cone",
             Surface::Sphere { .. } => "sphere",

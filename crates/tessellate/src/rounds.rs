@@ -17,14 +17,27 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// Rounds in which faces may ask for finer edges; what is still too coarse then is a reported failure.
+/// Rounds in which faces may ask for finer edges; what is still too coarse then is meshed as it is and reported.
 const MAX_ROUNDS: usize = 8;
+
+/// From this round on loops that still cross are taken to cross in truth.
+const LAST_RESORT: usize = 4;
 
 /// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter.
 const AIM: f64 = 0.995;
 
 /// Points nearer than this share of the tolerance are one point: poles, vertices on them, pcurves that agree.
 const SAME_POINT: f64 = 0.02;
+
+/// They are also nearer than this share of the part: a coarse tolerance merges nothing.
+const SAME_POINT_OF_PART: f64 = 1e-6;
+
+/// The diagonal of the box of a part's vertices.
+fn diagonal(part: &Part) -> f64 {
+    let low = part.vertices.iter().fold(DVec3::INFINITY, |m, v| m.min(v.point));
+    let high = part.vertices.iter().fold(DVec3::NEG_INFINITY, |m, v| m.max(v.point));
+    if low.is_finite() && high != low { (high - low).length() } else { f64::INFINITY }
+}
 
 /// Why a face is not even tried.
 fn unusable(face: &Face) -> Option<String> {
@@ -61,7 +74,7 @@ pub fn tessellate_part(
 ) -> (PartMesh, PartReport) {
     let mut report = PartReport::default();
     let clock = Instant::now();
-    let resolution = SAME_POINT * options.tolerance;
+    let resolution = (SAME_POINT * options.tolerance).min(SAME_POINT_OF_PART * diagonal(part));
     let exact: Vec<Option<std::borrow::Cow<'_, Surface>>> =
         part.faces.iter().map(|face| exact_surface(face)).collect();
     let surfaces = exact.iter().map(|s| s.as_deref().map(|s| FaceSurface::new(s, resolution))).collect();
@@ -187,7 +200,7 @@ impl Job<'_> {
         found
     }
 
-    fn mesh_one(&self, index: usize, edges: &[EdgeSamples]) -> Outcome {
+    fn mesh_one(&self, index: usize, edges: &[EdgeSamples], round: usize) -> Outcome {
         let face = &self.part.faces[index];
         if let Some(reason) = unusable(face) {
             return Outcome::Failed(reason);
@@ -198,7 +211,7 @@ impl Job<'_> {
         if self.cancel.is_cancelled() {
             return Outcome::Failed("cancelled".into());
         }
-        let context = FaceContext { part: self.part, face, surface, edges, resolution: self.resolution };
+        let context = FaceContext { part: self.part, face, surface, edges, last_resort: round >= LAST_RESORT, accept: round == MAX_ROUNDS, resolution: self.resolution };
         // The one place where a panic of ours becomes a face's failure.
         catch_unwind(AssertUnwindSafe(|| mesh_face(&context, &self.limits, self.options, self.cancel)))
             .unwrap_or_else(|_| Outcome::Failed("internal error".into()))
@@ -219,7 +232,7 @@ impl Job<'_> {
             let outcomes: Vec<Outcome> = dirty
                 .par_iter()
                 .map(|&f| {
-                    let outcome = self.mesh_one(f, edges);
+                    let outcome = self.mesh_one(f, edges, round);
                     if round == 0 {
                         done(finished.fetch_add(1, Ordering::Relaxed) + 1);
                     }

@@ -13,12 +13,12 @@ pub(crate) struct FaceSurface<'a> {
 }
 
 impl<'a> FaceSurface<'a> {
-    /// Control rows closer together than `resolution` count as a pole.
-    pub fn new(surface: &'a Surface, resolution: f64) -> Self {
+    /// Control rows closer together than `point` count as a pole.
+    pub fn new(surface: &'a Surface, point: f64) -> Self {
         Self {
             surface,
             periods: surface.periods(),
-            poles: surface.poles_within(resolution),
+            poles: surface.poles_within(point),
             wrap: Wrap::of(surface),
             inverter: OnceLock::new(),
         }

@@ -47,10 +47,11 @@ impl Chart {
             None
         };
         let polygons = unroll.nest(outer, plain)?;
-        let mut chart = Chart { private: unroll.private, ..Chart::default() };
+        let subdivided_poles = |polygon| unroll.subdivided_poles(polygon);
+        let mut chart = Chart { private: unroll.private.clone(), ..Chart::default() };
         for polygon in polygons {
             let start = chart.points.len() as u32;
-            chart.points.extend(polygon);
+            chart.points.extend(subdivided_poles(polygon));
             chart.loops.push((start, chart.points.len() as u32));
         }
         Ok(chart)
@@ -103,15 +104,16 @@ impl Unroll<'_, '_> {
 
     /// Points strictly between two chart points, as many as the metric asks for.
     fn between(&self, from: DVec2, to: DVec2) -> Vec<DVec2> {
-        const PROBES: usize = 16;
-        let d = (to - from) / PROBES as f64;
+        // Free surfaces may bend many times along a seam.
+        let probes = if self.context.surface.is_elementary() { 16 } else { 96 };
+        let d = (to - from) / probes as f64;
         let mut sum = vec![0.0];
-        for k in 0..PROBES {
+        for k in 0..probes {
             let jet = self.context.surface.jet(from + d * (k as f64 + 0.5));
             let step = Sizing::new(&jet, self.limits).map_or(0.0, |s| s.metric.length(d));
             sum.push(sum[k] + step);
         }
-        let total = sum[PROBES];
+        let total = sum[probes];
         let count = (total / self.seam_chord).ceil().clamp(1.0, 1e5) as usize;
         let mut at = 0;
         (1..count)
@@ -237,7 +239,7 @@ impl Unroll<'_, '_> {
         corner[across] = value;
         let inner = self.seam(&mut polygon, corner);
         let key = self.pole_key(corner);
-        self.pole_line(&mut polygon, corner, corner + by, key);
+        polygon.push(ChartPoint { uv: corner, key, segment: Segment::Pole });
         polygon.push(ChartPoint { uv: corner + by, key, segment: Segment::Seam });
         Self::seam_back(&mut polygon, &inner, by);
         polygon
@@ -254,14 +256,23 @@ impl Unroll<'_, '_> {
         }
     }
 
-    /// Chart points along a pole line, its end not included: neighbours need one each to fan from.
-    fn pole_line(&self, polygon: &mut Vec<ChartPoint>, from: DVec2, to: DVec2, key: Key) {
-        let count = self.pole_points(from, to);
-        polygon.extend((0..count).map(|k| ChartPoint {
-            uv: from.lerp(to, k as f64 / count as f64),
-            key,
-            segment: Segment::Pole,
-        }));
+    /// Gives every pole line chart points to fan from, one for each neighbour that needs one.
+    fn subdivided_poles(&self, polygon: Vec<ChartPoint>) -> Vec<ChartPoint> {
+        if polygon.iter().all(|p| p.segment != Segment::Pole) {
+            return polygon;
+        }
+        let mut fine = Vec::with_capacity(2 * polygon.len());
+        for (i, point) in polygon.iter().enumerate() {
+            let next = polygon[(i + 1) % polygon.len()].uv;
+            if point.segment != Segment::Pole || next == point.uv {
+                fine.push(*point);
+                continue;
+            }
+            let count = self.pole_points(point.uv, next);
+            let at = |k: usize| point.uv.lerp(next, k as f64 / count as f64);
+            fine.extend((0..count).map(|k| ChartPoint { uv: at(k), ..*point }));
+        }
+        fine
     }
 
     /// As many as chords fit round the surface half way to the middle of its domain.
@@ -375,8 +386,7 @@ impl Unroll<'_, '_> {
                 None
             };
             inner[k] = if poles[k] {
-                let count = self.pole_points(from, to);
-                (1..count).map(|i| (keys[k], from.lerp(to, i as f64 / count as f64))).collect()
+                Vec::new()
             } else if let Some(twin) = twin {
                 let by = to - sides[twin].0;
                 inner[twin].iter().rev().map(|&(key, uv)| (key, uv + by)).collect()
