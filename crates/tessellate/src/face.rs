@@ -261,7 +261,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         let keys: Vec<Key> = (0..self.mesh.points.len() as u32).map(|v| self.key(v)).collect();
         let mut private = self.chart.private.clone();
         private.extend_from_slice(&self.xyz[self.chart.points.len()..]);
-        let reversed = self.context.face.normal_reversed();
+        let reversed = self.context.face.normal_reversed() != self.chart.reversed;
         let keep = |t: &&[u32; 3]| {
             let [a, b, c] = t.map(|v| keys[v as usize]);
             a != b && b != c && c != a

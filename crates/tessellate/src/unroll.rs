@@ -23,6 +23,9 @@ pub(crate) struct Chart {
     pub loops: Vec<(u32, u32)>,
     /// Positions of the vertices with `Key::Private`.
     pub private: Vec<DVec3>,
+    /// The outer loop ran the other way in the file: its sense flag is wrong, or the loop folds over itself. Triangles
+    /// follow the loop, because that is what the neighbours agree with.
+    pub reversed: bool,
 }
 
 /// A seam or natural side is cut into chords a little shorter than allowed.
@@ -35,7 +38,7 @@ impl Chart {
     /// A sentence, where the loops bound no region.
     pub fn new(context: &FaceContext<'_, '_>, limits: &Limits, seam_chord: f64) -> Result<Self, String> {
         let (loops, lone) = context.loops()?;
-        let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new() };
+        let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new(), reversed: false };
         let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
         // Two points enclose nothing.
         plain.retain(|l| l.points.len() > 2);
@@ -48,7 +51,7 @@ impl Chart {
         };
         let polygons = unroll.nest(outer, plain)?;
         let subdivided_poles = |polygon| unroll.subdivided_poles(polygon);
-        let mut chart = Chart { private: unroll.private.clone(), ..Chart::default() };
+        let mut chart = Chart { private: unroll.private.clone(), reversed: unroll.reversed, ..Chart::default() };
         for polygon in polygons {
             let start = chart.points.len() as u32;
             chart.points.extend(subdivided_poles(polygon));
@@ -64,6 +67,7 @@ struct Unroll<'a, 's> {
     seam_chord: f64,
     lone: Vec<u32>,
     private: Vec<DVec3>,
+    reversed: bool,
 }
 
 fn area(points: &[ChartPoint]) -> f64 {
@@ -154,6 +158,7 @@ impl Unroll<'_, '_> {
                     None => {
                         // Nothing closes it on the side it claims: the file has it the wrong way round.
                         a.reverse();
+                        self.reversed = true;
                         pole(is_lower(&a))
                             .ok_or("one loop winds round the surface and nothing bounds the other side")?
                     }
@@ -169,7 +174,7 @@ impl Unroll<'_, '_> {
     }
 
     /// The lower loop, and the upper one moved above it.
-    fn pair(&self, mut winding: Vec<OpenLoop>, axis: usize) -> (OpenLoop, OpenLoop) {
+    fn pair(&mut self, mut winding: Vec<OpenLoop>, axis: usize) -> (OpenLoop, OpenLoop) {
         let across = 1 - axis;
         let mut b = winding.remove(1);
         let mut a = winding.remove(0);
@@ -188,6 +193,7 @@ impl Unroll<'_, '_> {
             None => {}
         }
         if !is_lower(&a) {
+            self.reversed = true;
             a.reverse();
         }
         if is_lower(&b) {
@@ -433,7 +439,7 @@ impl Unroll<'_, '_> {
 
     /// Orients the loops, moves holes by whole periods into the outer loop.
     fn nest(
-        &self,
+        &mut self,
         outer: Option<Vec<ChartPoint>>,
         mut plain: Vec<OpenLoop>,
     ) -> Result<Vec<Vec<ChartPoint>>, String> {
@@ -451,6 +457,7 @@ impl Unroll<'_, '_> {
                 let largest = (0..plain.len()).max_by(|&a, &b| size(&plain[a]).total_cmp(&size(&plain[b])));
                 let mut open = plain.remove(largest.ok_or("none of its loops encloses an area")?);
                 if area(&open.points) < 0.0 {
+                    self.reversed = true;
                     open.reverse();
                 }
                 open.points
