@@ -1,7 +1,5 @@
 //! Why nothing could be read at all.
 
-use chordal_brep::Source;
-
 /// A file that yields no model; one clear sentence each.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -18,6 +16,4 @@ pub enum ReadError {
     NoEntities { name: String, line: u32 },
     #[error("{name} holds no shape in its {entities} entities ({problem})")]
     NothingInIt { name: String, entities: usize, problem: String },
-    #[error("{source_entity}: {message}")]
-    Entity { source_entity: Source, message: String },
 }

@@ -300,7 +300,7 @@ impl<'d> Args<'d> {
             return Err(bad);
         }
         self.at = at;
-        let found = id.and_then(|id| self.doc.find(id));
+        let found = id.and_then(|id| self.doc.find_from(id, self.ix));
         found.ok_or_else(|| {
             let name = String::from_utf8_lossy(&self.bytes[start..at]);
             self.wrong(format!("refers to #{name}, which the file does not hold"))

@@ -51,6 +51,8 @@ pub(crate) struct Doc<'a> {
     bytes: &'a [u8],
     pub entries: Vec<Entry>,
     ids: Ids,
+    /// All positions of numbers given more than once, in file order.
+    repeated: FxHashMap<u64, Vec<Ix>>,
     keywords: Keywords,
     pub data: Option<usize>,
     pub lines: u32,
@@ -67,13 +69,37 @@ impl<'a> Doc<'a> {
         let keywords = Keywords::new();
         let Scan { mut entries, mut warnings, data, lines } = scan(bytes, &keywords);
         entries.shrink_to_fit();
-        let ids = index(&entries, &mut warnings);
+        let (ids, repeated) = index(&entries, &mut warnings);
         let budget = Cell::new(bytes.len() as u64 + 200_000);
         let warnings = RefCell::new(warnings);
-        Self { bytes, entries, ids, keywords, data, lines, warnings, dropped_warnings: Cell::new(0), budget }
+        Self {
+            bytes,
+            entries,
+            ids,
+            repeated,
+            keywords,
+            data,
+            lines,
+            warnings,
+            dropped_warnings: Cell::new(0),
+            budget,
+        }
     }
 
-    /// The entity with this number.
+    /// The entity that a reference in `from` means: of several with one number the nearest before it, else the first
+    /// behind it. So reads the kernel in widest use, and so do files pasted together from others stay whole.
+    pub(crate) fn find_from(&self, id: u64, from: Ix) -> Option<Ix> {
+        let found = self.find(id)?;
+        if self.repeated.is_empty() {
+            return Some(found);
+        }
+        let Some(all) = self.repeated.get(&id) else { return Some(found) };
+        let before = all.partition_point(|&ix| ix < from);
+        let behind = all[before..].iter().find(|&&ix| ix != from);
+        before.checked_sub(1).map(|last| all[last]).or(behind.copied())
+    }
+
+    /// The (first) entity with this number.
     pub(crate) fn find(&self, id: u64) -> Option<Ix> {
         match &self.ids {
             Ids::Dense(table) => table.get(usize::try_from(id).ok()?).copied().filter(|&ix| ix != Ix::MAX),
@@ -203,37 +229,37 @@ impl<'a> Doc<'a> {
     }
 }
 
-/// The table of entity numbers. Of several entities with one number the first is meant.
-fn index(entries: &[Entry], warnings: &mut Vec<Warning>) -> Ids {
+/// The table of entity numbers, and the positions of those given more than once.
+fn index(entries: &[Entry], warnings: &mut Vec<Warning>) -> (Ids, FxHashMap<u64, Vec<Ix>>) {
     let max = entries.iter().map(|entry| entry.id).max().unwrap_or(0);
-    let mut duplicate = |entry: &Entry, first: &Entry| {
+    let mut repeated: FxHashMap<u64, Vec<Ix>> = FxHashMap::default();
+    let mut repeat = |ix: Ix, entry: &Entry, first: Ix| {
+        repeated.entry(entry.id).or_insert_with(|| vec![first]).push(ix);
         if warnings.len() < MAX_WARNINGS {
             let source = Source { entity: entry.id, line: entry.line };
-            let message = format!("the number was already given at line {}; the first is used", first.line);
+            let line = entries[first as usize].line;
+            let message = format!(
+                "the number was already given at line {line}; references mean the nearest before them"
+            );
             warnings.push(Warning { source, message });
         }
     };
-    if max < entries.len() as u64 * 8 + 4096 {
+    let ids = if max < entries.len() as u64 * 8 + 4096 {
         let mut table = vec![Ix::MAX; max as usize + 1];
         for (ix, entry) in (0..).zip(entries) {
             let slot = &mut table[entry.id as usize];
-            match *slot {
-                Ix::MAX => *slot = ix,
-                first => duplicate(entry, &entries[first as usize]),
+            if *slot == Ix::MAX { *slot = ix } else { repeat(ix, entry, *slot) }
+        }
+        Ids::Dense(table)
+    } else {
+        let mut map = FxHashMap::with_capacity_and_hasher(entries.len(), Default::default());
+        for (ix, entry) in (0..).zip(entries) {
+            let first = *map.entry(entry.id).or_insert(ix);
+            if first != ix {
+                repeat(ix, entry, first);
             }
         }
-        return Ids::Dense(table);
-    }
-    let mut map = FxHashMap::with_capacity_and_hasher(entries.len(), Default::default());
-    for (ix, entry) in (0..).zip(entries) {
-        match map.entry(entry.id) {
-            std::collections::hash_map::Entry::Vacant(slot) => {
-                slot.insert(ix);
-            }
-            std::collections::hash_map::Entry::Occupied(slot) => {
-                duplicate(entry, &entries[*slot.get() as usize])
-            }
-        }
-    }
-    Ids::Sparse(map)
+        Ids::Sparse(map)
+    };
+    (ids, repeated)
 }

@@ -199,5 +199,7 @@ impl Relation {
 fn is_name(name: &str) -> bool {
     let name = name.trim();
     let numbered = name.trim_start_matches("NAUO").chars().all(|c| c.is_ascii_digit());
-    !name.is_empty() && !name.starts_with("=>[") && !numbered
+    let boilerplate =
+        name.to_ascii_lowercase().starts_with("next assembly") || name.eq_ignore_ascii_case("none");
+    !name.is_empty() && !name.starts_with("=>[") && !numbered && !boilerplate
 }
