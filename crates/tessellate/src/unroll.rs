@@ -466,8 +466,12 @@ impl Unroll<'_, '_> {
         let mut holes = Vec::with_capacity(plain.len());
         for mut open in plain {
             let by = self.shift_into(&outer, &open.points);
-            // A loop outside the outer one is another piece of the face, not a hole.
-            if (area(&open.points) > 0.0) == by.is_some() {
+            if self.reversed {
+                open.reverse();
+            }
+            // What the file runs as a hole is one, even where coarse chords put it across the outer loop: finer ones will not.
+            // What it runs as an outer loop is one only outside the outer loop: another piece of the face.
+            if area(&open.points) > 0.0 && by.is_some() {
                 open.reverse();
             }
             holes.push(shifted(&open.points, by.unwrap_or(DVec2::ZERO)));
