@@ -25,6 +25,8 @@ impl fmt::Display for Source {
 pub struct Warning {
     pub source: Source,
     pub message: String,
+    /// Part of the file's shape may be missing from the model because of this.
+    pub lost: bool,
 }
 
 impl fmt::Display for Warning {

@@ -200,6 +200,7 @@ pub(crate) fn warnings(model: &Model) -> Vec<WarningEntry> {
         id: entity_id(w.source),
         line: w.source.line,
         message: w.message.clone(),
+        lost: w.lost,
     };
     model.warnings.iter().map(entry).collect()
 }

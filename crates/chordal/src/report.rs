@@ -166,6 +166,8 @@ pub struct WarningEntry {
     pub id: String,
     pub line: u32,
     pub message: String,
+    /// Part of the file's shape may be missing because of this: the job is not clean.
+    pub lost: bool,
 }
 
 /// The written file.

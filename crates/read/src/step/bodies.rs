@@ -20,7 +20,7 @@ impl Builder<'_> {
             return;
         }
         if let Err(bad) = self.read_item(ix, depth) {
-            self.warn_bad(&bad);
+            self.lose_bad(&bad);
         }
     }
 
@@ -83,7 +83,7 @@ impl Builder<'_> {
     fn unknown_item(&mut self, ix: Ix) {
         let name = self.doc.written_name(ix);
         if !is_text_or_view(&name) {
-            self.doc.warn(ix, format!("{name} is not understood; left out"));
+            self.doc.lose(ix, format!("{name} is not understood; left out"));
         }
     }
 
@@ -144,7 +144,7 @@ impl Builder<'_> {
             self.taken.insert(shell);
             match self.shell(shell) {
                 Ok(id) => ids.push(id),
-                Err(bad) => self.warn_bad(&bad),
+                Err(bad) => self.lose_bad(&bad),
             }
         }
         if ids.is_empty() {

@@ -141,6 +141,11 @@ impl<'d> Builder<'d> {
         self.doc.warn_bad(bad);
     }
 
+    /// Notes what is wrong with something whose shape will be missing.
+    pub(crate) fn lose_bad(&self, bad: &Bad) {
+        self.doc.lose_bad(bad);
+    }
+
     pub(crate) fn color(&self, ix: Ix) -> Option<Color> {
         self.styles.colors.get(&ix).copied()
     }

@@ -58,6 +58,7 @@ pub(crate) struct Doc<'a> {
     pub lines: u32,
     warnings: RefCell<Vec<Warning>>,
     dropped_warnings: Cell<usize>,
+    dropped_lost: Cell<bool>,
     /// Entities that may still be opened. It bounds the work on files whose references fan out for ever; an honest
     /// file needs about one opening per reference, and a reference takes at least three bytes.
     budget: Cell<u64>,
@@ -82,6 +83,7 @@ impl<'a> Doc<'a> {
             lines,
             warnings,
             dropped_warnings: Cell::new(0),
+            dropped_lost: Cell::new(false),
             budget,
         }
     }
@@ -136,11 +138,26 @@ impl<'a> Doc<'a> {
     }
 
     pub(crate) fn warn_at(&self, source: Source, message: impl Into<String>) {
+        self.push_warning(Warning { source, message: message.into(), lost: false });
+    }
+
+    /// Notes a warning about an entity whose shape, or some of it, will be missing from the model.
+    pub(crate) fn lose(&self, ix: Ix, message: impl Into<String>) {
+        self.push_warning(Warning { source: self.source(ix), message: message.into(), lost: true });
+    }
+
+    /// Notes what is wrong with an entity whose shape will be missing from the model.
+    pub(crate) fn lose_bad(&self, bad: &Bad) {
+        self.push_warning(Warning { source: bad.source(), message: bad.message().into(), lost: true });
+    }
+
+    fn push_warning(&self, warning: Warning) {
         let mut warnings = self.warnings.borrow_mut();
         if warnings.len() < MAX_WARNINGS {
-            warnings.push(Warning { source, message: message.into() });
+            warnings.push(warning);
         } else {
             self.dropped_warnings.set(self.dropped_warnings.get() + 1);
+            self.dropped_lost.set(self.dropped_lost.get() || warning.lost);
         }
     }
 
@@ -154,7 +171,7 @@ impl<'a> Doc<'a> {
         let mut warnings = self.warnings.take();
         if self.dropped_warnings.get() > 0 {
             let message = format!("{} further warnings are not listed", self.dropped_warnings.get());
-            warnings.push(Warning { source: Source::default(), message });
+            warnings.push(Warning { source: Source::default(), message, lost: self.dropped_lost.get() });
         }
         warnings
     }
@@ -241,7 +258,7 @@ fn index(entries: &[Entry], warnings: &mut Vec<Warning>) -> (Ids, FxHashMap<u64,
             let message = format!(
                 "the number was already given at line {line}; references mean the nearest before them"
             );
-            warnings.push(Warning { source, message });
+            warnings.push(Warning { source, message, lost: false });
         }
     };
     let ids = if max < entries.len() as u64 * 8 + 4096 {

@@ -68,7 +68,7 @@ impl Products {
             let (definition, representation) = match (definition, representation) {
                 (Ok(definition), Ok(representation)) => (definition, representation),
                 (Err(bad), _) | (_, Err(bad)) => {
-                    doc.warn_bad(&bad);
+                    doc.lose_bad(&bad);
                     continue;
                 }
             };
@@ -106,7 +106,7 @@ impl Products {
                     self.usages.entry(parent).or_default().push(Usage { ix, child, name });
                     self.used.insert(child);
                 }
-                (Err(bad), _) | (_, Err(bad)) => doc.warn_bad(&bad),
+                (Err(bad), _) | (_, Err(bad)) => doc.lose_bad(&bad),
             }
         }
     }

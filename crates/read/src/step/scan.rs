@@ -117,10 +117,17 @@ const CLASS: [u8; 256] = {
 
 impl Scanner<'_> {
     fn warn(&mut self, entity: u64, message: impl Into<String>) {
-        if self.out.warnings.len() < super::document::MAX_WARNINGS {
-            self.out
-                .warnings
-                .push(Warning { source: Source { entity, line: self.line }, message: message.into() });
+        self.push_warning(entity, message.into(), false);
+    }
+
+    /// Notes that part of the file is missing.
+    fn lose(&mut self, entity: u64, message: impl Into<String>) {
+        self.push_warning(entity, message.into(), true);
+    }
+
+    fn push_warning(&mut self, entity: u64, message: String, lost: bool) {
+        if self.out.warnings.len() < super::document::MAX_WARNINGS || lost {
+            self.out.warnings.push(Warning { source: Source { entity, line: self.line }, message, lost });
         }
     }
 
@@ -210,7 +217,7 @@ impl Scanner<'_> {
             }
         }
         if !ended && in_data {
-            self.warn(
+            self.lose(
                 0,
                 "the file is truncated: it ends before its DATA section does; what is complete was read",
             );
@@ -310,7 +317,7 @@ impl Scanner<'_> {
         let offset = self.at as u64;
         match self.record() {
             End::OfFile => {
-                self.warn(id, "the file is truncated within this entity; it is left out");
+                self.lose(id, "the file is truncated within this entity; it is left out");
                 return;
             }
             End::Early => self.warn(id, "a closing parenthesis is missing"),

@@ -76,7 +76,7 @@ impl Builder<'_> {
                 };
                 let result = self.triangles(member, &mut own);
                 match result {
-                    Err(bad) => self.warn_bad(&bad),
+                    Err(bad) => self.lose_bad(&bad),
                     Ok(()) if color.is_some() && color != item.color => self.part.tessellated.push(own),
                     Ok(()) => append(item, own),
                 }

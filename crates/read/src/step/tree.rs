@@ -163,7 +163,7 @@ impl<'d> Tree<'d> {
                 Some(Rc::new(Shape { name, items, mapped, context, mm }))
             }
             Err(bad) => {
-                self.doc.warn_bad(&bad);
+                self.doc.lose_bad(&bad);
                 None
             }
         };
@@ -191,7 +191,7 @@ impl<'d> Tree<'d> {
     fn new_node(&mut self, name: String, ix: Ix) -> Option<NodeId> {
         if self.nodes.len() >= MAX_NODES {
             if !self.cut_off {
-                self.doc.warn(
+                self.doc.lose(
                     ix,
                     format!("the assembly unfolds to more than {MAX_NODES} nodes; the rest is left out"),
                 );
@@ -215,12 +215,12 @@ impl<'d> Tree<'d> {
     /// Enters an entity on the way down; false where it is already on the way, or the way is too long.
     fn enter(&mut self, ix: Ix) -> bool {
         if self.path.contains(&ix) {
-            self.doc.warn(ix, "the assembly contains itself; cut off here");
+            self.doc.lose(ix, "the assembly contains itself; cut off here");
             return false;
         }
         if self.path.len() >= MAX_DEPTH {
             self.doc
-                .warn(ix, format!("the assembly is nested more than {MAX_DEPTH} levels deep; cut off here"));
+                .lose(ix, format!("the assembly is nested more than {MAX_DEPTH} levels deep; cut off here"));
             return false;
         }
         self.path.push(ix);
@@ -267,7 +267,7 @@ impl<'d> Tree<'d> {
                 }
                 match self.relation_transform(relation, other) {
                     Ok(transform) => found.push((other, to_product * transform)),
-                    Err(bad) => self.doc.warn_bad(&bad),
+                    Err(bad) => self.doc.lose_bad(&bad),
                 }
             }
         }
@@ -415,7 +415,7 @@ impl<'d> Tree<'d> {
         let copy = match self.read_copy(ix, parent_mm) {
             Ok(copy) => Some(Rc::new(copy)),
             Err(bad) => {
-                self.doc.warn_bad(&bad);
+                self.doc.lose_bad(&bad);
                 None
             }
         };
