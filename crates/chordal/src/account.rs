@@ -170,12 +170,12 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
 fn never_placed(part: &Part) -> WarningEntry {
     let message =
         format!("the part `{}` is never placed: its {} faces are not meshed", part.name, part.faces.len());
-    WarningEntry { id: entity_id(part.source), line: part.source.line, message }
+    WarningEntry { id: entity_id(part.source), line: part.source.line, message, lost: false }
 }
 
 fn add_shells(report: &mut Report, entry: &Entry<'_>) {
     let instances = entry.part_use.instances;
-    let sound = |s: &AuditedShell| s.open_edges == 0 && s.inconsistent_edges == 0;
+    let sound = |s: &AuditedShell| s.open_edges == 0 && s.inconsistent_edges == 0 && s.missing_faces == 0;
     for shell in &entry.audited.shells {
         report.shells.total += instances;
         if shell.closed_in_file {
@@ -248,6 +248,15 @@ fn undone(report: &Report, bound: Bound) -> Vec<String> {
             report.faces.total, first.kind, first.reason
         ));
     }
+    let mut lost = report.warnings.iter().filter(|w| w.lost);
+    if let Some(first) = lost.next() {
+        let others = match lost.count() {
+            0 => String::new(),
+            n => format!(" (and {n} more)"),
+        };
+        let at = place(&first.id, first.line);
+        undone.push(format!("part of the file's shape may be missing: {at}{}{others}", first.message));
+    }
     let tolerance = report.options.tolerance;
     match report.proven_error {
         Some(error) if error > tolerance => {
@@ -277,6 +286,14 @@ fn undone(report: &Report, bound: Bound) -> Vec<String> {
     undone
 }
 
+fn place(id: &str, line: u32) -> String {
+    match (id.is_empty(), line) {
+        (true, 0) => String::new(),
+        (true, line) => format!("line {line}: "),
+        (false, line) => format!("{id} (line {line}): "),
+    }
+}
+
 fn in_part(name: &str, problem: &str) -> String {
     if name.is_empty() { problem.to_owned() } else { format!("part `{name}`: {problem}") }
 }
@@ -290,10 +307,8 @@ impl Report {
             bytes: summary.bytes,
             rounding: summary.rounding_mm,
         });
-        self.warnings.extend(summary.warnings.iter().map(|w| WarningEntry {
-            id: String::new(),
-            line: 0,
-            message: w.clone(),
-        }));
+        self.warnings.extend(
+            summary.warnings.iter().map(|w| WarningEntry { message: w.clone(), ..WarningEntry::default() }),
+        );
     }
 }

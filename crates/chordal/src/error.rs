@@ -25,6 +25,8 @@ pub enum JobError {
     BelowFloor { path: PathBuf, tolerance: f64, floor: f64 },
     #[error("{}: {at}: a coordinate of {reach:.1e} is too large to be meant", path.display())]
     TooLarge { path: PathBuf, at: String, reach: f64 },
+    #[error("{}: none of {faces} faces could be meshed: {first}", path.display())]
+    NothingMeshed { path: PathBuf, faces: usize, first: String },
     #[error("{}: nothing is written because of --strict: {}", path.display(), first_of(.undone))]
     Strict { path: PathBuf, undone: Vec<String> },
     #[error("{}: cancelled", path.display())]

@@ -130,6 +130,11 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
 
     // 5. Account: what was done, what is proven, what was left undone.
     let mut report = account(job, &model, &resolved, &parts, &audits);
+    if report.triangles == 0 {
+        let (faces, first) = (report.faces.total, report.undone.into_iter().next());
+        let first = first.unwrap_or_else(|| "they have no area, or are never placed".into());
+        return Err(JobError::NothingMeshed { path: job.input.clone(), faces, first });
+    }
     if job.options.strict && !report.clean {
         return Err(JobError::Strict { path: job.input.clone(), undone: report.undone });
     }

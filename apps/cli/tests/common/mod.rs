@@ -2,8 +2,16 @@
 #![allow(dead_code, reason = "every test file uses its own part of this")]
 
 use std::ffi::OsStr;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// The exit code of a program that did not end in time.
+pub const HANGS: i32 = -1;
+/// Every file of the corpus is small; machines of continuous integration are slow.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What one run said and how it ended.
 #[derive(Debug)]
@@ -38,12 +46,28 @@ impl Ran {
 
 /// Runs `chordal` with these arguments.
 pub fn chordal<S: AsRef<OsStr>>(args: impl IntoIterator<Item = S>) -> Ran {
-    let output = Command::new(env!("CARGO_BIN_EXE_chordal")).args(args).output().expect("the program starts");
-    Ran {
-        code: output.status.code().expect("the program was not killed"),
-        stdout: String::from_utf8(output.stdout).expect("stdout is UTF-8"),
-        stderr: String::from_utf8(output.stderr).expect("stderr is UTF-8"),
-    }
+    let scratch = tempfile::tempdir().expect("a folder");
+    // Files, not pipes: nobody has to read them while the program runs.
+    let (out, err) = (scratch.path().join("stdout"), scratch.path().join("stderr"));
+    let mut child = Command::new(env!("CARGO_BIN_EXE_chordal"))
+        .args(args)
+        .stdout(File::create(&out).expect("a file"))
+        .stderr(File::create(&err).expect("a file"))
+        .spawn()
+        .expect("the program starts");
+    let started = Instant::now();
+    let code = loop {
+        if let Some(status) = child.try_wait().expect("a child") {
+            break status.code().expect("the program was not killed");
+        }
+        if started.elapsed() > PATIENCE {
+            child.kill().and_then(|()| child.wait()).expect("a child");
+            break HANGS;
+        }
+        sleep(Duration::from_millis(2));
+    };
+    let text = |path: &Path| std::fs::read_to_string(path).expect("UTF-8");
+    Ran { code, stdout: text(&out), stderr: text(&err) }
 }
 
 /// Runs a command line without spaces in its arguments, paths put in for `{}`.

@@ -7,12 +7,15 @@ use chordal_brep::{Face, FaceGeometry, Part};
 use chordal_nurbs::Surface;
 use chordal_tessellate::{Bound, Cancel, Options, tessellate_part};
 use glam::{DAffine3, DVec2, DVec3};
+use std::time::Duration;
 
 /// Tolerance of the coarse mesh, relative to the box of the edges.
 const COARSE: f64 = 0.01;
 /// Samples per side of a triangle that is searched, and how often the search narrows.
 const SIDE: usize = 6;
 const ZOOMS: usize = 8;
+/// A face that cannot be meshed coarsely in this time will fail later as well, and with a reason.
+const GIVE_UP: Duration = Duration::from_secs(20);
 
 pub(super) fn include(found: &mut TightBox, part: &Part, part_use: &PartUse, cancel: &Cancel) {
     let faces: Vec<&Face> = part.faces.iter().filter(|f| reaches_out(f, found, part_use)).collect();
@@ -34,7 +37,10 @@ pub(super) fn include(found: &mut TightBox, part: &Part, part_use: &PartUse, can
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return;
     }
-    let options = Options::new(tolerance).with_angle(Some(0.6)).with_bound(Bound::Estimated);
+    let options = Options::new(tolerance)
+        .with_angle(Some(0.6))
+        .with_bound(Bound::Estimated)
+        .with_face_timeout(Some(GIVE_UP));
     let (mesh, _) = tessellate_part(&coarse, &options, cancel, &|_| ());
     for world in &part_use.worlds {
         mesh.positions.iter().for_each(|&p| found.include(world.transform_point3(p)));
