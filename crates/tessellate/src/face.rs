@@ -53,14 +53,38 @@ pub(crate) fn mesh_face(
     cancel: &Cancel,
 ) -> Outcome {
     let mut seam_chord = SEAM_CHORD;
+    let mut accept = context.accept;
     for _ in 0..SEAM_TRIES {
-        match FaceWork::run(context, limits, options, cancel, seam_chord) {
-            Ok(Some(outcome)) => return outcome,
-            Ok(None) => seam_chord *= 0.7,
+        match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept }) {
+            Ok(Attempt::Over(outcome)) => return outcome,
+            Ok(Attempt::FinerSeam) => seam_chord *= 0.7,
+            // Nothing more can be done about it: better a face that is known to be off than none.
+            Ok(Attempt::Stuck) => accept = true,
             Err(reason) => return Outcome::Failed(reason),
         }
     }
-    Outcome::Failed("its seam cannot be cut finely enough".into())
+    match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept: true }) {
+        Ok(Attempt::Over(outcome)) => outcome,
+        Ok(_) => Outcome::Failed("its seam cannot be cut finely enough".into()),
+        Err(reason) => Outcome::Failed(reason),
+    }
+}
+
+/// How one attempt at a face is made.
+#[derive(Clone, Copy)]
+struct Try {
+    seam_chord: f64,
+    /// Take what there is, with the error it has.
+    accept: bool,
+}
+
+/// How one attempt at a face ended.
+enum Attempt {
+    Over(Outcome),
+    /// The seam must be cut finer.
+    FinerSeam,
+    /// A triangle can be mended by nothing.
+    Stuck,
 }
 
 /// A seam that proves too coarse is cut finer this often.
@@ -81,16 +105,15 @@ pub(crate) struct FaceWork<'a, 's> {
 }
 
 impl<'a, 's> FaceWork<'a, 's> {
-    /// `None` where the seam must be cut finer.
     fn run(
         context: &'a FaceContext<'a, 's>,
         limits: &'a Limits,
         options: &Options,
         cancel: &Cancel,
-        seam_chord: f64,
-    ) -> Result<Option<Outcome>, String> {
+        how: Try,
+    ) -> Result<Attempt, String> {
         let started = Instant::now();
-        let chart = Chart::new(context, limits, seam_chord)?;
+        let chart = Chart::new(context, limits, how.seam_chord)?;
         let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
         let shape = shape(context, limits, UvBox::from_points(points.iter().copied()));
         let triangles = match boundary_triangles(&points, &chart, shape) {
@@ -98,7 +121,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             Err(_) if context.last_resort && clip_ears(&points, &chart.loops).is_some() => {
                 clip_ears(&points, &chart.loops).unwrap_or_default()
             }
-            Err(culprits) => return finer_or_fail(&chart, &culprits).map(Some),
+            Err(culprits) => return finer_or_fail(&chart, &culprits).map(Attempt::Over),
         };
         let uv_box = UvBox::from_points(points.iter().copied());
         let mut work = Self {
@@ -119,13 +142,14 @@ impl<'a, 's> FaceWork<'a, 's> {
         }
         let bounds = SurfaceBounds::new(context.surface.surface, uv_box);
         let deadline = options.face_timeout.map(|t| started + t);
-        let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, context.accept);
+        let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, how.accept);
         let verdict = prover.refine(&mut work)?;
         match verdict {
-            Verdict::Finer(chords) => Ok(Some(Outcome::Finer(chords))),
-            Verdict::FinerSeam => Ok(None),
+            Verdict::Finer(chords) => Ok(Attempt::Over(Outcome::Finer(chords))),
+            Verdict::FinerSeam => Ok(Attempt::FinerSeam),
+            Verdict::Stuck => Ok(Attempt::Stuck),
             Verdict::Proven { error, bound } => {
-                Ok(Some(Outcome::Done(Box::new(work.finish(error, bound, options)))))
+                Ok(Attempt::Over(Outcome::Done(Box::new(work.finish(error, bound, options)))))
             }
         }
     }

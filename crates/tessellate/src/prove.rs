@@ -18,6 +18,8 @@ pub(crate) enum Verdict {
     Finer(Vec<(u32, u32)>),
     /// A seam, which only this face knows, is too coarse.
     FinerSeam,
+    /// A triangle can be mended by nothing.
+    Stuck,
 }
 
 pub(crate) struct Prover<'a> {
@@ -91,10 +93,13 @@ impl<'a> Prover<'a> {
                         continue;
                     }
                     let overdone = steps > budget;
-                    if self.accept && overdone {
+                    if overdone && !self.accept {
+                        return Ok(Verdict::Stuck);
+                    }
+                    if overdone {
                         continue;
                     }
-                    if work.mesh.triangles.len() > self.options.face_triangles || overdone {
+                    if work.mesh.triangles.len() > self.options.face_triangles {
                         return Err(format!("it needs more than {} triangles", work.mesh.triangles.len()));
                     }
                     if !self.mend(work, t, edge) {
@@ -102,7 +107,7 @@ impl<'a> Prover<'a> {
                             Some(_) if self.accept => continue,
                             Some(chord) => requests.push(chord),
                             None if self.accept => continue,
-                            None => return Err("a triangle cannot be brought within the tolerance".into()),
+                            None => return Ok(Verdict::Stuck),
                         }
                     }
                 }
