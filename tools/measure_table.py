@@ -21,7 +21,7 @@ def write_tables(rows: Sequence[Row], results: Path, described: str) -> None:
 
 def tsv(rows: Sequence[Row]) -> str:
     names = [f.name for f in fields(Row) if f.name not in ("notes", "reasons")]
-    lines = ["\t".join([*names, *PROMISES])]
+    lines = ["\t".join([*names, *(f"ok_{name}" for name in PROMISES)])]
     for row in rows:
         values = ["" if (v := getattr(row, name)) is None else str(v).replace("\t", " ") for name in names]
         lines.append("\t".join([*values, *({True: "1", False: "0", None: ""}[k] for k in row.promises().values())]))
