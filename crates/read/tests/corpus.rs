@@ -182,6 +182,12 @@ fn survives(bytes: &[u8]) -> Result<Model, ReadError> {
     result
 }
 
+/// How many mutants of each file: CHORDAL_MUTANTS times as many as usual for a longer hunt.
+fn mutants(usual: usize) -> usize {
+    let times = std::env::var("CHORDAL_MUTANTS").ok().and_then(|n| n.parse::<usize>().ok());
+    usual * times.unwrap_or(1)
+}
+
 #[test]
 fn truncation_anywhere_is_survived() {
     for name in ["cone_apex", "styles", "mapped_items", "strings"] {
@@ -215,7 +221,7 @@ fn mutants_are_survived() {
         "faceted",
     ] {
         let original = std::fs::read(corpus().join(format!("{name}.step"))).expect("a corpus file");
-        for _ in 0..400 {
+        for _ in 0..mutants(400) {
             let mut bytes = original.clone();
             for _ in 0..1 + random(8) {
                 let at = random(bytes.len());
@@ -246,7 +252,7 @@ fn references_swapped_at_random_are_survived() {
         let text = std::fs::read_to_string(corpus().join(format!("{name}.step"))).expect("a corpus file");
         let pieces: Vec<&str> = text.split('#').collect();
         let digits = |piece: &str| piece.bytes().take_while(u8::is_ascii_digit).count();
-        for _ in 0..60 {
+        for _ in 0..mutants(60) {
             let mut mutant = pieces[0].to_owned();
             for piece in &pieces[1..] {
                 let (number, rest) = piece.split_at(digits(piece));

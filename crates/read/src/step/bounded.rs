@@ -168,9 +168,11 @@ impl Builder<'_> {
     /// A closed chain of curve pieces as edges of their own.
     fn boundary_coedges(&mut self, ix: Ix, segments: Vec<CompositeSegment>) -> Res<Vec<Coedge>> {
         let source = self.doc.source(ix);
-        if segments.iter().any(|s| {
-            !s.curve.point(s.start).is_finite() || !s.curve.point(s.end).is_finite() || s.start == s.end
-        }) {
+        let endless = |s: &CompositeSegment| {
+            let finite = s.start.is_finite() && s.end.is_finite() && s.start != s.end;
+            !finite || !s.curve.point(s.start).is_finite() || !s.curve.point(s.end).is_finite()
+        };
+        if segments.iter().any(endless) {
             return Err(self.doc.bad(ix, "a piece of it has no ends"));
         }
         // Vertex i is where piece i ends and piece i + 1 starts.

@@ -107,6 +107,9 @@ impl Builder<'_> {
             return false;
         }
         let Range { start, end } = edge.range;
+        if start + period <= end {
+            return false;
+        }
         edge.range = Range::new(end, start + period);
         std::mem::swap(&mut edge.start, &mut edge.end);
         let entity = self.doc.find(edge.source.entity);

@@ -393,17 +393,13 @@ impl Trim {
 /// parameters came in the wrong order. `None` where they are equal.
 fn between(curve: &Curve, from: f64, to: f64) -> Option<(Range, bool)> {
     if let Some(period) = curve.period() {
-        let mut end = to;
-        if (end - from).abs() > 4.0 * period {
-            end = from + (end - from).rem_euclid(period);
+        // Beyond this many turns an angle has too few digits left to mean anything.
+        if !(from - to).is_finite() || from.abs().max(to.abs()) > 1e9 * period {
+            return None;
         }
-        while end <= from + 1e-12 * period {
-            end += period;
-        }
-        while end > from + period * (1.0 + 1e-12) {
-            end -= period;
-        }
-        return Some((Range::new(from, end), false));
+        let turn = (to - from).rem_euclid(period);
+        let length = if turn <= 1e-12 * period { period } else { turn };
+        return Some((Range::new(from, from + length), false));
     }
     if from == to {
         return None;

@@ -26,10 +26,11 @@ pub(crate) fn locate(
     same_vertex: bool,
     same_sense: bool,
 ) -> Option<Located> {
-    match curve.period() {
+    let located = match curve.period() {
         Some(period) => on_closed(curve, period, start, end, same_vertex, same_sense),
         None => on_open(curve, start, end, same_vertex, same_sense),
-    }
+    };
+    located.filter(|l| l.range.is_finite() && l.range.start < l.range.end)
 }
 
 fn on_closed(
@@ -58,14 +59,9 @@ fn on_closed(
     if near(t1, domain.start) {
         t1 = domain.end;
     }
-    if !t0.is_finite() || !t1.is_finite() {
-        return None;
-    }
-    while t1 <= t0 {
-        t1 += period;
-    }
-    while t1 > t0 + period * (1.0 + 1e-12) {
-        t1 -= period;
+    if !(t1 > t0 && t1 <= t0 + period) {
+        let turn = (t1 - t0).rem_euclid(period);
+        t1 = t0 + if turn > 0.0 { turn } else { period };
     }
     located(Range::new(t0, t1))
 }
