@@ -211,7 +211,15 @@ impl Job<'_> {
         if self.cancel.is_cancelled() {
             return Outcome::Failed("cancelled".into());
         }
-        let context = FaceContext { part: self.part, face, surface, edges, last_resort: round >= LAST_RESORT, accept: round == MAX_ROUNDS, resolution: self.resolution };
+        let context = FaceContext {
+            part: self.part,
+            face,
+            surface,
+            edges,
+            last_resort: round >= LAST_RESORT,
+            accept: round == MAX_ROUNDS,
+            resolution: self.resolution,
+        };
         // The one place where a panic of ours becomes a face's failure.
         catch_unwind(AssertUnwindSafe(|| mesh_face(&context, &self.limits, self.options, self.cancel)))
             .unwrap_or_else(|_| Outcome::Failed("internal error".into()))

@@ -51,7 +51,8 @@ impl Chart {
         };
         let polygons = unroll.nest(outer, plain)?;
         let subdivided_poles = |polygon| unroll.subdivided_poles(polygon);
-        let mut chart = Chart { private: unroll.private.clone(), reversed: unroll.reversed, ..Chart::default() };
+        let mut chart =
+            Chart { private: unroll.private.clone(), reversed: unroll.reversed, ..Chart::default() };
         for polygon in polygons {
             let start = chart.points.len() as u32;
             chart.points.extend(subdivided_poles(polygon));

@@ -123,8 +123,9 @@ pub(super) fn bound(
     let sideways = frame.m.map(|m| Form::new(pieces, m));
     let quick = quick_parts(&frame, &normal, &h, &sideways);
     let bound = combine(facet, &quick, slope);
-    // Without the deviations it would do: then it is worth looking closer.
-    if bound.error <= enough || largest_quadratic(h) > 1.02 * enough {
+    // Where even the least that the enclosures allow on an edge is too much, looking closer is in vain.
+    let least = (0..3).map(|i| (h[i].abs() - normal.reach_along(frame.d[i])) / 8.0).fold(0.0, f64::max);
+    if bound.error <= enough || least > enough {
         return bound;
     }
     let mut best = bound;

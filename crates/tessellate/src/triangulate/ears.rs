@@ -97,7 +97,8 @@ mod tests {
 
     #[test]
     fn a_hole_is_left_out() {
-        let p = [(0., 0.), (4., 0.), (4., 4.), (0., 4.), (1., 1.), (1., 3.), (3., 3.), (3., 1.)].map(DVec2::from);
+        let p =
+            [(0., 0.), (4., 0.), (4., 4.), (0., 4.), (1., 1.), (1., 3.), (3., 3.), (3., 1.)].map(DVec2::from);
         let triangles = clip_ears(&p, &[(0, 4), (4, 8)]).expect("small");
         let area: f64 = triangles
             .iter()
