@@ -199,7 +199,11 @@ impl Seeds {
             return found;
         }
         let mut best = local.unwrap_or(CurveInversion { t: self.stops[0], distance: f64::INFINITY });
-        for (_, i) in self.valleys(of) {
+        for (_, i) in self.valleys(&of) {
+            // On the curve, up to rounding: nothing is closer.
+            if best.distance <= 1e-10 * self.spacing {
+                break;
+            }
             let seed = self.samples[i];
             let range = Range::new(self.stops[seed.piece], self.stops[seed.piece + 1]);
             // Off the ends of a piece: the jet there may be that of the piece beyond.
@@ -210,7 +214,7 @@ impl Seeds {
             if found.distance < best.distance * (1.0 - 1e-9) {
                 best = found;
             }
-            let exact = residual(seed.t)[0].length();
+            let exact = of(seed.p).length();
             if exact < best.distance * (1.0 - 1e-9) {
                 best = CurveInversion { t: seed.t, distance: exact };
             }
@@ -268,6 +272,8 @@ pub(crate) fn descend(residual: impl Fn(f64) -> [DVec3; 3], start: f64, range: R
         if !step.is_finite() || step == 0.0 {
             break;
         }
+        // After a Newton step this short the next one is all rounding.
+        let last = newton == slope && step.abs() <= 1e-9 * range.length();
         let mut moved = false;
         for _ in 0..20 {
             let next = range.clamp(t + step);
@@ -287,11 +293,23 @@ pub(crate) fn descend(residual: impl Fn(f64) -> [DVec3; 3], start: f64, range: R
             }
             step *= 0.25;
         }
-        if !moved {
+        if !moved || last {
             break;
         }
     }
-    CurveInversion { t, distance: r.length() }
+    // Near the foot of a point off the curve the distance itself hardly changes, so that the descent ends with half of
+    // the digits: one more Newton step.
+    let distance = r.length();
+    let slope = r1.length_squared() + r.dot(r2);
+    let step = -r.dot(r1) / slope;
+    if slope > 0.0 && step.abs() * r1.length() <= 1e-5 * distance {
+        let next = range.clamp(t + step);
+        let [r, ..] = residual(next);
+        if r.length() <= distance * (1.0 + 1e-13) {
+            return CurveInversion { t: next, distance: r.length() };
+        }
+    }
+    CurveInversion { t, distance }
 }
 
 #[cfg(test)]

@@ -93,20 +93,35 @@ impl<'a> SurfaceInverter<'a> {
                 let near = near.map(|n| self.wrapped_into(n, *uv));
                 general::invert(self.surface, self.periods, *uv, grid, p_xyz, near)
             }
-            Method::Offset { basis, uv } => {
-                let first = basis.invert(p_xyz, near).uv;
-                let mut found = general::descend(self.surface, self.periods, *uv, p_xyz, first);
-                if let Some(near) = near {
-                    let other = general::descend(self.surface, self.periods, *uv, p_xyz, near);
-                    if other.distance < found.distance * (1.0 - 1e-9) {
-                        found = other;
-                    }
-                }
-                found.uv
-            }
+            Method::Offset { basis, uv } => self.invert_offset(basis, *uv, p_xyz, near),
         };
         let uv = self.placed(uv, near);
         Inversion { uv, distance: self.surface.point(uv).distance(p_xyz) }
+    }
+
+    /// Normals of an offset are those of its basis, so that a foot on the basis is one on the offset; which of several
+    /// is closest may differ.
+    fn invert_offset(
+        &self,
+        basis: &SurfaceInverter<'a>,
+        domain: UvBox,
+        p: DVec3,
+        near: Option<DVec2>,
+    ) -> DVec2 {
+        let off = |uv: DVec2| self.surface.point(uv).distance(p);
+        if let Some(near) = near {
+            let foot = general::descend(basis.surface, self.periods, domain, p, near).uv;
+            if general::is_close(basis.surface, domain, foot, off(foot)) {
+                return foot;
+            }
+        }
+        let foot = basis.invert(p, near).uv;
+        if general::is_close(basis.surface, domain, foot, off(foot)) {
+            return foot;
+        }
+        let starts = [Some(foot), near].into_iter().flatten();
+        let found = starts.map(|start| general::descend(self.surface, self.periods, domain, p, start));
+        found.min_by(|a, b| a.distance.total_cmp(&b.distance)).map_or(foot, |f| f.uv)
     }
 
     fn wrapped_into(&self, p_uv: DVec2, uv: UvBox) -> DVec2 {

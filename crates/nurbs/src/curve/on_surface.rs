@@ -2,7 +2,7 @@
 //!
 //! The chain rule, with bounds of the surface's derivatives over the box that the parameter curve keeps to.
 
-use crate::{Curve, Curve2, Range, Surface, UvBox};
+use crate::{Curve, Curve2, Range, Surface, SurfaceBounds, UvBox};
 use glam::DVec2;
 
 /// Norms of Su, Sv, Suu, Suv, Svv over a box.
@@ -30,7 +30,7 @@ pub(super) fn derivative_bound(surface: &Surface, curve: &Curve2, order: usize, 
     }
 }
 
-/// `None` where nothing is proven: free-form and offset surfaces.
+/// `None` where nothing is proven.
 fn norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
     let farthest = |r: f64, slope: f64| (r + slope * uv.min.y).abs().max((r + slope * uv.max.y).abs());
     Some(match surface {
@@ -60,8 +60,39 @@ fn norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
             let r = profile.point(uv.center().y).distance(*axis_origin) + d1 * 0.5 * uv.size().y;
             Norms { first: [r, d1], second: [r, d1, d2] }
         }
-        Surface::Nurbs(_) | Surface::Offset { .. } => return None,
+        Surface::Nurbs(_) | Surface::Offset { .. } => return general_norms(surface, uv),
     })
+}
+
+/// From enclosures of the second derivatives, and the first ones at the middle. The box is cut to the domain, outside of
+/// which only closed directions go on.
+fn general_norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
+    let domain = surface.domain();
+    let mut inside = UvBox::new(domain.clamp(uv.min), domain.clamp(uv.max));
+    for (axis, period) in surface.periods().into_iter().enumerate() {
+        if period.is_some() {
+            inside.min[axis] = uv.min[axis];
+            inside.max[axis] = uv.max[axis];
+        }
+    }
+    let uv = inside;
+    let mut pieces = Vec::new();
+    let jump = SurfaceBounds::new(surface, uv).pieces(uv, &mut pieces);
+    let mut second = [0.0f64; 3];
+    for piece in &pieces {
+        let half = piece.half;
+        for (k, bound) in second.iter_mut().enumerate() {
+            let reach = |i: usize| piece.third[i].center.length() + piece.third[i].radius;
+            *bound = bound.max(piece.second[k].length() + reach(k) * half.x + reach(k + 1) * half.y);
+        }
+    }
+    let (_, du, dv) = surface.jet1(uv.center());
+    let half = uv.size() * 0.5;
+    let first = [
+        du.length() + second[0] * half.x + second[1] * half.y + jump.x * pieces.len() as f64,
+        dv.length() + second[1] * half.x + second[2] * half.y + jump.y * pieces.len() as f64,
+    ];
+    (!pieces.is_empty()).then_some(Norms { first, second })
 }
 
 impl Curve2 {

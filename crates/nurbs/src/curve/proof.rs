@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Pieces into which curves without a closed form are cut to bound them.
-const PIECES: usize = 8;
+const PIECES: usize = 4;
 
 /// Rounding of an evaluation, relative to the largest coordinate in play.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -79,7 +79,12 @@ impl Curve {
                 stops.sort_by(f64::total_cmp);
                 self.chained(range, stops, |piece| {
                     let second = self.derivative_bound(2, piece) * piece.length().powi(2) / 8.0;
-                    second.min(self.derivative_bound(1, piece) * piece.length() * 0.5)
+                    // Half the length run bounds it too, where there is a cusp.
+                    if second.is_finite() {
+                        second
+                    } else {
+                        self.derivative_bound(1, piece) * piece.length() * 0.5
+                    }
                 })
             }
         }

@@ -134,16 +134,17 @@ pub(super) fn invert(
     let domain = surface.domain();
     let local = near.map(|n| descend(surface, periods, domain, p, n));
     if let Some(found) = local {
-        // One cell of the grid, without having to build it.
-        let jet = surface.jet1(found.uv);
-        let size = (jet.1 * domain.size().x).length().min((jet.2 * domain.size().y).length());
-        if found.distance <= 1e-5 * size {
+        if is_close(surface, domain, found.uv, found.distance) {
             return found.uv;
         }
     }
     let grid = grid.get_or_init(|| Grid::new(surface, uv));
     let mut best = local.unwrap_or(Inversion { uv: uv.center(), distance: f64::INFINITY });
     for start in grid.valleys(p) {
+        // On the surface, up to rounding: nothing is closer.
+        if best.distance <= 1e-10 * grid.cell {
+            break;
+        }
         let found = descend(surface, periods, domain, p, start);
         // What `near` found stays unless another place is truly closer.
         if found.distance < best.distance * (1.0 - 1e-9) {
@@ -151,6 +152,15 @@ pub(super) fn invert(
         }
     }
     best.uv
+}
+
+/// True where a distance is so small beside the surface that no other part of it is likely to be meant.
+pub(super) fn is_close(surface: &Surface, domain: UvBox, uv: DVec2, distance: f64) -> bool {
+    let (_, du, dv) = surface.jet1(uv);
+    let size = domain.size();
+    let extent = |d: DVec3, size: f64| if size.is_finite() { d.length() * size } else { f64::INFINITY };
+    let least = extent(du, size.x).min(extent(dv, size.y));
+    distance <= 1e-5 * if least.is_finite() { least } else { du.length().max(dv.length()) }
 }
 
 /// Goes down from `start` inside the domain; closed directions have no border.
@@ -173,7 +183,7 @@ pub(super) fn descend(
     let mut height = (jet.p - p).length_squared();
     let mut damping = 0.0;
     for _ in 0..60 {
-        let Some(step) = newton_step(&jet, p, damping, uv, open) else { break };
+        let Some((step, full)) = newton_step(&jet, p, damping, uv, open) else { break };
         let next = open.clamp(uv + step);
         if next == uv {
             break;
@@ -182,6 +192,11 @@ pub(super) fn descend(
         let next_height = (next_jet.p - p).length_squared();
         if next_height < height {
             (uv, jet, height) = (next, next_jet, next_height);
+            // After an undamped step this short the next one is all rounding.
+            let short = (step / domain.size()).abs().max_element() <= 1e-9;
+            if full && damping == 0.0 && short {
+                break;
+            }
             damping = if damping < 1e-3 { 0.0 } else { damping * 0.1 };
             continue;
         }
@@ -192,10 +207,28 @@ pub(super) fn descend(
         }
         damping = if damping == 0.0 { 1e-2 } else { damping * 10.0 };
     }
-    Inversion { uv, distance: height.sqrt() }
+    polished(surface, p, open, Inversion { uv, distance: height.sqrt() }, &jet)
 }
 
-fn newton_step(jet: &SurfaceJet, p: DVec3, damping: f64, uv: DVec2, open: UvBox) -> Option<DVec2> {
+/// One more Newton step where the point is off the surface: near the foot the distance itself hardly changes, so that
+/// the descent ends with half of the digits.
+//
+// Never inlined: within `descend` the optimiser of rustc 1.95 (vectorisation of straight code, at level 3) returned a
+// wrong v for a point exactly on the surface; the inversion tests show it in release builds.
+#[inline(never)]
+fn polished(surface: &Surface, p: DVec3, open: UvBox, found: Inversion, jet: &SurfaceJet) -> Inversion {
+    let Some((step, true)) = newton_step(jet, p, 0.0, found.uv, open) else { return found };
+    let moved = (jet.du * step.x).length() + (jet.dv * step.y).length();
+    if moved > 1e-5 * found.distance {
+        return found;
+    }
+    let uv = open.clamp(found.uv + step);
+    let distance = surface.point(uv).distance(p);
+    if distance <= found.distance * (1.0 + 1e-13) { Inversion { uv, distance } } else { found }
+}
+
+/// The step, and whether it is a full Newton step, which converges quadratically.
+fn newton_step(jet: &SurfaceJet, p: DVec3, damping: f64, uv: DVec2, open: UvBox) -> Option<(DVec2, bool)> {
     let r = jet.p - p;
     let g = DVec2::new(r.dot(jet.du), r.dot(jet.dv));
     let (e, f, h) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
@@ -207,6 +240,7 @@ fn newton_step(jet: &SurfaceJet, p: DVec3, damping: f64, uv: DVec2, open: UvBox)
         let slope = if full > 0.05 * gauss { full } else { gauss };
         -g / (slope + damping * gauss)
     };
+    let mut newton = false;
     let step = match (held(0), held(1)) {
         (true, true) => return None,
         (true, false) => DVec2::new(0.0, one(h, r.dot(jet.dvv), g.y)),
@@ -215,6 +249,7 @@ fn newton_step(jet: &SurfaceJet, p: DVec3, damping: f64, uv: DVec2, open: UvBox)
             let full = [e + r.dot(jet.duu), f + r.dot(jet.duv), h + r.dot(jet.dvv)];
             let positive =
                 full[0] > 0.0 && full[0] * full[2] - full[1] * full[1] > 1e-3 * (e * h - f * f).max(0.0);
+            newton = positive;
             let [a, b, c] = if positive { full } else { [e, f, h] };
             // A collapsed direction stays where it is.
             let (a, c) = (a + damping * e, c + damping * h);
@@ -229,5 +264,5 @@ fn newton_step(jet: &SurfaceJet, p: DVec3, damping: f64, uv: DVec2, open: UvBox)
             }
         }
     };
-    step.is_finite().then_some(step)
+    step.is_finite().then_some((step, newton))
 }
