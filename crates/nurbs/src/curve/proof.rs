@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Pieces into which curves without a closed form are cut to bound them.
-const PIECES: usize = 4;
+const PIECES: usize = 8;
 
 /// Rounding of an evaluation, relative to the largest coordinate in play.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -79,11 +79,11 @@ impl Curve {
                 stops.sort_by(f64::total_cmp);
                 self.chained(range, stops, |piece| {
                     let second = self.derivative_bound(2, piece) * piece.length().powi(2) / 8.0;
-                    // Half the length run bounds it too, where there is a cusp.
-                    if second.is_finite() {
+                    // Half the length run bounds it too: less where the piece bends hard.
+                    if second <= 0.5 * self.point(piece.start).distance(self.point(piece.end)) {
                         second
                     } else {
-                        self.derivative_bound(1, piece) * piece.length() * 0.5
+                        second.min(self.derivative_bound(1, piece) * piece.length() * 0.5)
                     }
                 })
             }
