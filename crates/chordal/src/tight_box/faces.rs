@@ -4,6 +4,7 @@ use super::hull::{bulges, support};
 use super::{Direction, TightBox};
 use crate::placement::PartUse;
 use chordal_brep::{Face, FaceGeometry, Part};
+use chordal_mesh::{FaceMesh, PartMesh};
 use chordal_nurbs::Surface;
 use chordal_tessellate::{Bound, Cancel, Options, tessellate_part};
 use glam::{DAffine3, DVec2, DVec3};
@@ -12,7 +13,7 @@ use std::time::Duration;
 /// Tolerance of the coarse mesh, relative to the box of the edges.
 const COARSE: f64 = 0.01;
 /// Samples per side of a triangle that is searched, and how often the search narrows.
-const SIDE: usize = 6;
+const SIDE: usize = 4;
 const ZOOMS: usize = 8;
 /// A face that cannot be meshed coarsely in this time will fail later as well, and with a reason.
 const GIVE_UP: Duration = Duration::from_secs(20);
@@ -47,12 +48,11 @@ pub(super) fn include(found: &mut TightBox, part: &Part, part_use: &PartUse, can
     }
     for (face, face_mesh) in faces.iter().zip(&mesh.faces) {
         let FaceGeometry::Surface(surface) = &face.geometry else { continue };
-        for triangle in &face_mesh.triangles {
-            let corners = triangle.map(|c| face_mesh.corners[c as usize]);
-            let uv = corners.map(|c| c.uv);
-            let xyz = corners.map(|c| mesh.positions[c.position as usize]);
-            for world in &part_use.worlds {
-                Direction::ALL.iter().for_each(|&d| search(found, surface, uv, xyz, tolerance, world, d));
+        let mut facets: Vec<Facet> =
+            face_mesh.triangles.iter().map(|t| Facet::of(&mesh, face_mesh, *t)).collect();
+        for world in &part_use.worlds {
+            for direction in Direction::ALL {
+                climb(found, surface, &mut facets, tolerance, world, direction);
             }
         }
     }
@@ -86,24 +86,77 @@ fn outer_size(faces: &[&Face], part_use: &PartUse) -> f64 {
     faces.iter().filter_map(of_face).fold(0.0, f64::max) * part_use.scale
 }
 
-/// Climbs on the exact surface over one triangle, where it can matter.
-fn search(
-    found: &mut TightBox,
-    surface: &Surface,
+/// One triangle of the coarse mesh.
+struct Facet {
     uv: [DVec2; 3],
     xyz: [DVec3; 3],
+    /// How far the surface lies off the triangle, at samples; found when first needed.
+    sag: Option<f64>,
+}
+
+impl Facet {
+    fn of(mesh: &PartMesh, face: &FaceMesh, triangle: [u32; 3]) -> Self {
+        let corners = triangle.map(|c| face.corners[c as usize]);
+        Self {
+            uv: corners.map(|c| c.uv),
+            xyz: corners.map(|c| mesh.positions[c.position as usize]),
+            sag: None,
+        }
+    }
+
+    fn uv_at(&self, st: DVec2) -> DVec2 {
+        self.uv[0] + (self.uv[1] - self.uv[0]) * st.x + (self.uv[2] - self.uv[0]) * st.y
+    }
+
+    fn sag(&mut self, surface: &Surface) -> f64 {
+        if let Some(sag) = self.sag {
+            return sag;
+        }
+        let [a, b, c] = self.xyz;
+        let off = |s: f64, t: f64| {
+            let st = DVec2::new(s, t);
+            surface.point(self.uv_at(st)).distance(a + (b - a) * s + (c - a) * t)
+        };
+        let sag = [(0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (1.0 / 3.0, 1.0 / 3.0)].map(|(s, t)| off(s, t));
+        let sag = sag.into_iter().fold(0.0, f64::max);
+        self.sag = Some(sag);
+        sag
+    }
+}
+
+/// Searches the triangles that may hold the extreme along one direction, the most promising first.
+fn climb(
+    found: &mut TightBox,
+    surface: &Surface,
+    facets: &mut [Facet],
     tolerance: f64,
     world: &DAffine3,
     direction: Direction,
 ) {
     let (gradient, constant) = direction.in_part(world);
-    let value = |p: DVec3| gradient.dot(p) + constant;
-    let highest = xyz.iter().map(|&p| value(p)).fold(f64::NEG_INFINITY, f64::max);
-    // The coarse mesh is only estimated to keep its tolerance: twice that is looked at.
-    if highest + 2.0 * tolerance * gradient.length() <= found.extreme(direction) {
-        return;
+    let steep = gradient.length();
+    let corner =
+        |f: &Facet| f.xyz.iter().map(|&p| gradient.dot(p) + constant).fold(f64::NEG_INFINITY, f64::max);
+    // The coarse mesh is only estimated to keep its tolerance: twice that, and twice the sag, is looked at.
+    let near: Vec<&mut Facet> = facets
+        .iter_mut()
+        .filter(|f| corner(f) + 2.0 * tolerance * steep > found.extreme(direction))
+        .collect();
+    let mut promising: Vec<(f64, &mut Facet)> =
+        near.into_iter().map(|f| (corner(f) + 2.0 * f.sag(surface) * steep, f)).collect();
+    promising.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (promise, facet) in promising {
+        if promise <= found.extreme(direction) {
+            return;
+        }
+        if let Some(highest) = search(surface, facet, gradient) {
+            found.include(world.transform_point3(highest));
+        }
     }
-    let point = |s: f64, t: f64| surface.point(uv[0] + (uv[1] - uv[0]) * s + (uv[2] - uv[0]) * t);
+}
+
+/// The highest point of the surface over one triangle: a lattice that narrows around its best point.
+fn search(surface: &Surface, facet: &Facet, gradient: DVec3) -> Option<DVec3> {
     let (mut center, mut half) = (DVec2::splat(1.0 / 3.0), 1.0);
     let mut best = (f64::NEG_INFINITY, DVec3::NAN);
     for _ in 0..ZOOMS {
@@ -112,18 +165,16 @@ fn search(
             for j in 0..=SIDE {
                 let offset = DVec2::new(i as f64, j as f64) * (2.0 / SIDE as f64) - 1.0;
                 let st = inside(around + offset * half);
-                let p = point(st.x, st.y);
-                if value(p) > best.0 {
-                    best = (value(p), p);
+                let p = surface.point(facet.uv_at(st));
+                if gradient.dot(p) > best.0 {
+                    best = (gradient.dot(p), p);
                     center = st;
                 }
             }
         }
         half *= 0.4;
     }
-    if best.0.is_finite() {
-        found.include(world.transform_point3(best.1));
-    }
+    best.0.is_finite().then_some(best.1)
 }
 
 /// The nearest barycentric coordinates inside the triangle, roughly.
