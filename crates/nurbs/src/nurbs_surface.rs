@@ -1,8 +1,11 @@
 //! Non-uniform rational B-spline surfaces.
 
+mod memo;
+
 use crate::basis::{self, Basis};
 use crate::{NurbsError, Range, SurfaceJet, UvBox, Vector, tensor};
 use glam::{DAffine3, DVec2, DVec3};
+use memo::Memo;
 
 /// A tensor-product B-spline surface of any degree from 1 to 100, rational where it has weights.
 ///
@@ -17,6 +20,8 @@ pub struct NurbsSurface {
     count_v: usize,
     points: Vec<DVec3>,
     weights: Option<Vec<f64>>,
+    /// Its periods in u and v: asking for them evaluates both of its sides.
+    pub(crate) periods: Memo<[Option<f64>; 2]>,
 }
 
 impl NurbsSurface {
@@ -46,7 +51,17 @@ impl NurbsSurface {
             return Err(NurbsError::NotFinite(i));
         }
         let weights = basis::check_weights(weights, points.len())?;
-        Ok(Self { degree_u, degree_v, knots_u, knots_v, count_u, count_v, points, weights })
+        Ok(Self {
+            degree_u,
+            degree_v,
+            knots_u,
+            knots_v,
+            count_u,
+            count_v,
+            points,
+            weights,
+            periods: Memo::default(),
+        })
     }
     pub fn degree(&self) -> [usize; 2] {
         [self.degree_u, self.degree_v]
@@ -101,7 +116,11 @@ impl NurbsSurface {
 
     /// The surface moved by an affine map.
     pub fn transformed(&self, by: &DAffine3) -> Self {
-        Self { points: self.points.iter().map(|&p| by.transform_point3(p)).collect(), ..self.clone() }
+        Self {
+            points: self.points.iter().map(|&p| by.transform_point3(p)).collect(),
+            periods: Memo::default(),
+            ..self.clone()
+        }
     }
 
     /// The same surface with u run backwards over the same domain.
@@ -140,6 +159,7 @@ impl NurbsSurface {
             weights: self.weights.as_ref().map(|w| order.iter().map(|&k| w[k]).collect()),
             knots_u: self.knots_u.clone(),
             knots_v: self.knots_v.clone(),
+            periods: Memo::default(),
             ..*self
         }
     }

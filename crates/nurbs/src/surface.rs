@@ -217,7 +217,7 @@ impl Surface {
             Surface::Torus { .. } => [Some(TAU), Some(TAU)],
             Surface::Extrusion { profile, .. } => [profile.period(), None],
             Surface::Revolution { profile, .. } => [Some(TAU), profile.period()],
-            Surface::Nurbs(nurbs) => [0, 1].map(|axis| nurbs_period(nurbs, axis)),
+            Surface::Nurbs(nurbs) => nurbs_periods(nurbs),
             Surface::Offset { basis, .. } => basis.periods(),
         }
     }
@@ -256,7 +256,7 @@ impl Surface {
         let mut inside = p_uv;
         for axis in 0..2 {
             let beyond = !(p_uv[axis] >= domain.min[axis] && p_uv[axis] <= domain.max[axis]);
-            if beyond && nurbs_period(nurbs, axis).is_some() {
+            if beyond && nurbs_periods(nurbs)[axis].is_some() {
                 inside[axis] = wrapped(p_uv[axis], domain.min[axis], domain.max[axis]);
             }
         }
@@ -281,6 +281,11 @@ fn ring_jet(f: &Frame, u: f64, rho: [f64; 3], h: [f64; 3]) -> SurfaceJet {
         duv: t * rho[1],
         dvv: e * rho[2] + f.z * h[2],
     }
+}
+
+/// The periods along u and v, found once.
+fn nurbs_periods(nurbs: &NurbsSurface) -> [Option<f64>; 2] {
+    nurbs.periods.get(|| [0, 1].map(|axis| nurbs_period(nurbs, axis)))
 }
 
 /// The domain's length along `axis` where the surface's two sides there meet point by point.
