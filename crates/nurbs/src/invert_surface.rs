@@ -3,6 +3,7 @@
 mod elementary;
 mod general;
 mod swept;
+mod terrain;
 
 use crate::conic::{unwrapped, wrapped};
 use crate::{Surface, UvBox};
@@ -10,6 +11,7 @@ use general::Grid;
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 use swept::{ExtrusionInverter, RevolutionInverter};
+use terrain::Terrain;
 
 /// The closest point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,12 +38,14 @@ enum Method<'a> {
     Revolution(RevolutionInverter<'a>),
     /// Samples are taken when first needed.
     Grid {
+        terrain: Terrain<'a>,
         grid: OnceLock<Grid>,
         uv: UvBox,
     },
     Offset {
+        terrain: Terrain<'a>,
+        basis_terrain: Terrain<'a>,
         basis: Box<SurfaceInverter<'a>>,
-        uv: UvBox,
     },
 }
 
@@ -69,10 +73,16 @@ impl<'a> SurfaceInverter<'a> {
             Surface::Revolution { profile, axis_origin, axis } => {
                 Method::Revolution(RevolutionInverter::new(profile, *axis_origin, *axis, uv.v()))
             }
-            Surface::Nurbs(_) => Method::Grid { grid: OnceLock::new(), uv: sampled_box(uv, domain, periods) },
-            Surface::Offset { basis, .. } => {
-                Method::Offset { basis: Box::new(Self::new(basis, uv)), uv: domain }
-            }
+            Surface::Nurbs(_) => Method::Grid {
+                terrain: Terrain::new(surface, periods),
+                grid: OnceLock::new(),
+                uv: sampled_box(uv, domain, periods),
+            },
+            Surface::Offset { basis, .. } => Method::Offset {
+                terrain: Terrain::new(surface, periods),
+                basis_terrain: Terrain::new(basis, periods),
+                basis: Box::new(Self::new(basis, uv)),
+            },
             _ => Method::Elementary,
         };
         Self { surface, start, periods, method }
@@ -89,49 +99,13 @@ impl<'a> SurfaceInverter<'a> {
             Method::Elementary => elementary::invert(self.surface, p_xyz, near),
             Method::Extrusion(inverter) => inverter.invert(p_xyz, near),
             Method::Revolution(inverter) => inverter.invert(p_xyz, near),
-            Method::Grid { grid, uv } => {
-                let near = near.map(|n| self.wrapped_into(n, *uv));
-                general::invert(self.surface, self.periods, *uv, grid, p_xyz, near)
+            Method::Grid { terrain, grid, uv } => general::invert(terrain, *uv, grid, p_xyz, near),
+            Method::Offset { terrain, basis_terrain, basis } => {
+                invert_offset(terrain, basis_terrain, basis, p_xyz, near)
             }
-            Method::Offset { basis, uv } => self.invert_offset(basis, *uv, p_xyz, near),
         };
         let uv = self.placed(uv, near);
         Inversion { uv, distance: self.surface.point(uv).distance(p_xyz) }
-    }
-
-    /// Normals of an offset are those of its basis, so that a foot on the basis is one on the offset; which of several
-    /// is closest may differ.
-    fn invert_offset(
-        &self,
-        basis: &SurfaceInverter<'a>,
-        domain: UvBox,
-        p: DVec3,
-        near: Option<DVec2>,
-    ) -> DVec2 {
-        let off = |uv: DVec2| self.surface.point(uv).distance(p);
-        if let Some(near) = near {
-            let foot = general::descend(basis.surface, self.periods, domain, p, near).uv;
-            if general::is_close(basis.surface, domain, foot, off(foot)) {
-                return foot;
-            }
-        }
-        let foot = basis.invert(p, near).uv;
-        if general::is_close(basis.surface, domain, foot, off(foot)) {
-            return foot;
-        }
-        let starts = [Some(foot), near].into_iter().flatten();
-        let found = starts.map(|start| general::descend(self.surface, self.periods, domain, p, start));
-        found.min_by(|a, b| a.distance.total_cmp(&b.distance)).map_or(foot, |f| f.uv)
-    }
-
-    fn wrapped_into(&self, p_uv: DVec2, uv: UvBox) -> DVec2 {
-        let mut inside = p_uv;
-        for axis in 0..2 {
-            if let Some(period) = self.periods[axis] {
-                inside[axis] = wrapped(p_uv[axis], uv.min[axis], uv.min[axis] + period);
-            }
-        }
-        inside
     }
 
     /// Closed directions in the turn that is asked for.
@@ -147,6 +121,31 @@ impl<'a> SurfaceInverter<'a> {
         }
         placed
     }
+}
+
+/// Normals of an offset are those of its basis, so that a foot on the basis is one on the offset; which of several is
+/// closest may differ.
+fn invert_offset(
+    terrain: &Terrain<'_>,
+    basis_terrain: &Terrain<'_>,
+    basis: &SurfaceInverter<'_>,
+    p: DVec3,
+    near: Option<DVec2>,
+) -> DVec2 {
+    let off = |uv: DVec2| terrain.point(uv).distance(p);
+    if let Some(near) = near {
+        let foot = general::descend(basis_terrain, p, near).uv;
+        if general::is_close(basis_terrain, foot, off(foot)) {
+            return foot;
+        }
+    }
+    let foot = basis.invert(p, near).uv;
+    if general::is_close(basis_terrain, foot, off(foot)) {
+        return foot;
+    }
+    let starts = [Some(foot), near].into_iter().flatten();
+    let found = starts.map(|start| general::descend(terrain, p, start));
+    found.min_by(|a, b| a.distance.total_cmp(&b.distance)).map_or(foot, |f| f.uv)
 }
 
 /// The lower corner of `uv`, of the domain where that is infinite, or zero.

@@ -3,19 +3,25 @@
 //! With r = S(u,v) − p the descent solves H δ = −g, g = (r·Su, r·Sv),
 //! H = [Su·Su + r·Suu, Su·Sv + r·Suv; ·, Sv·Sv + r·Svv] + λ diag(Su·Su, Sv·Sv), leaving out the terms in r where H would
 //! not be positive (Gauss–Newton), and keeps to the domain by dropping a direction that is against its border. λ
-//! grows until the distance falls. Not guaranteed: that the grid sees a valley narrower than its cells.
+//! grows until the distance falls. A descent keeps to one smooth cell; from its border it is tried again in the
+//! next cell. Not guaranteed: that the grid sees a valley narrower than its cells.
 
 use super::Inversion;
+use super::terrain::Terrain;
 use crate::{Box3, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 
 /// Samples along each side of the tiles that are looked into or passed over as a whole.
-const TILE: usize = 8;
+const TILE: usize = 4;
 /// Fewest and most samples of a direction.
-const SAMPLES: [usize; 2] = [9, 193];
+const SAMPLES: [usize; 2] = [17, 193];
 /// Valleys that are followed down.
-const VALLEYS: usize = 4;
+const VALLEYS: usize = 12;
+/// Further starts where those led nowhere near the point.
+const SECOND_TRIES: usize = 24;
+/// Creases crossed by one descent.
+const CROSSINGS: usize = 8;
 
 /// Points of a surface on a grid.
 #[derive(Clone, Debug)]
@@ -64,8 +70,8 @@ impl Grid {
         Self { us, vs, points, tiles, cell }
     }
 
-    /// The best samples of the most promising tiles, the best first.
-    fn valleys(&self, p: DVec3) -> Vec<DVec2> {
+    /// Samples that are lower than those around them, in the tiles that may hold the lowest, the lowest first.
+    fn valleys(&self, p: DVec3) -> Vec<(f64, DVec2)> {
         let mut order: Vec<(f64, usize)> = self
             .tiles
             .iter()
@@ -79,27 +85,48 @@ impl Grid {
             if lower > best + self.cell {
                 break;
             }
-            let (distance, uv) = self.best_of(&self.tiles[index], p);
-            best = best.min(distance);
-            found.push((distance, uv));
+            self.valleys_of(&self.tiles[index], p, &mut found);
+            best = found.iter().fold(best, |b, f| b.min(f.0));
         }
-        found.retain(|f| f.0 <= best + self.cell);
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         found.truncate(VALLEYS);
+        found
+    }
+
+    /// The lowest sample of each tile that may reach below `height`.
+    fn tile_starts(&self, p: DVec3, height: f64) -> Vec<DVec2> {
+        let mut found: Vec<(f64, DVec2)> = self
+            .tiles
+            .iter()
+            .filter(|t| p.distance(p.max(t.bounds.min).min(t.bounds.max)) <= height + 0.5 * self.cell)
+            .map(|tile| {
+                let rows = tile.rows[0]..=tile.rows[1];
+                let inside = rows.flat_map(|i| (tile.columns[0]..=tile.columns[1]).map(move |j| (i, j)));
+                let distances =
+                    inside.map(|(i, j)| (self.points[i * self.vs.len() + j].distance_squared(p), i, j));
+                let lowest = distances.fold((f64::INFINITY, 0, 0), |a, b| if b.0 < a.0 { b } else { a });
+                (lowest.0, DVec2::new(self.us[lowest.1], self.vs[lowest.2]))
+            })
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(SECOND_TRIES);
         found.into_iter().map(|f| f.1).collect()
     }
 
-    fn best_of(&self, tile: &Tile, p: DVec3) -> (f64, DVec2) {
-        let mut best = (f64::INFINITY, DVec2::ZERO);
+    fn valleys_of(&self, tile: &Tile, p: DVec3, found: &mut Vec<(f64, DVec2)>) {
+        let height = |i: usize, j: usize| self.points[i * self.vs.len() + j].distance_squared(p);
         for i in tile.rows[0]..=tile.rows[1] {
             for j in tile.columns[0]..=tile.columns[1] {
-                let distance = self.points[i * self.vs.len() + j].distance_squared(p);
-                if distance < best.0 {
-                    best = (distance, DVec2::new(self.us[i], self.vs[j]));
+                let here = height(i, j);
+                let rows = i.saturating_sub(1)..=(i + 1).min(self.us.len() - 1);
+                let columns = j.saturating_sub(1)..=(j + 1).min(self.vs.len() - 1);
+                let mut around = rows.flat_map(|k| columns.clone().map(move |l| (k, l)));
+                let lowest = around.all(|(k, l)| height(k, l) >= here);
+                if lowest {
+                    found.push((here.sqrt(), DVec2::new(self.us[i], self.vs[j])));
                 }
             }
         }
-        (best.0.sqrt(), best.1)
     }
 }
 
@@ -112,7 +139,7 @@ fn stations(start: f64, end: f64, breaks: &[f64], degree: usize) -> Vec<f64> {
     if spans >= SAMPLES[1] {
         return (0..SAMPLES[1]).map(|i| start + (end - start) * i as f64 / (SAMPLES[1] - 1) as f64).collect();
     }
-    let wanted = (degree + 1).max((SAMPLES[0] - 1).div_ceil(spans));
+    let wanted = (degree + 2).max((SAMPLES[0] - 1).div_ceil(spans));
     let steps = wanted.min((SAMPLES[1] / spans).max(1));
     let mut found = vec![start];
     for pair in stops.windows(2) {
@@ -124,62 +151,70 @@ fn stations(start: f64, end: f64, breaks: &[f64], degree: usize) -> Vec<f64> {
 
 /// The closest point; a close one in the valley of `near` comes first.
 pub(super) fn invert(
-    surface: &Surface,
-    periods: [Option<f64>; 2],
+    terrain: &Terrain<'_>,
     uv: UvBox,
     grid: &OnceLock<Grid>,
     p: DVec3,
     near: Option<DVec2>,
 ) -> DVec2 {
-    let domain = surface.domain();
-    let local = near.map(|n| descend(surface, periods, domain, p, n));
-    if let Some(found) = local {
-        if is_close(surface, domain, found.uv, found.distance) {
-            return found.uv;
-        }
+    let local = near.map(|n| descend(terrain, p, n));
+    if let Some(found) = local.filter(|found| is_close(terrain, found.uv, found.distance)) {
+        return found.uv;
     }
-    let grid = grid.get_or_init(|| Grid::new(surface, uv));
+    let grid = grid.get_or_init(|| Grid::new(terrain.surface, uv));
     let mut best = local.unwrap_or(Inversion { uv: uv.center(), distance: f64::INFINITY });
-    for start in grid.valleys(p) {
-        // On the surface, up to rounding: nothing is closer.
-        if best.distance <= 1e-10 * grid.cell {
+    for (height, start) in grid.valleys(p) {
+        // On the surface, up to rounding, or lower than this valley can be: nothing is closer.
+        if best.distance <= 1e-10 * grid.cell || best.distance < height - grid.cell {
             break;
         }
-        let found = descend(surface, periods, domain, p, start);
-        // What `near` found stays unless another place is truly closer.
-        if found.distance < best.distance * (1.0 - 1e-9) {
-            best = found;
+        best = better(best, descend(terrain, p, start));
+    }
+    // Not on the surface after all: points are expected to be, so that a valley may have hidden between samples.
+    if best.distance > 0.02 * grid.cell {
+        for start in grid.tile_starts(p, best.distance) {
+            best = better(best, descend(terrain, p, start));
         }
     }
     best.uv
 }
 
+/// What was found first stays unless another place is truly closer.
+fn better(first: Inversion, other: Inversion) -> Inversion {
+    if other.distance < first.distance * (1.0 - 1e-9) { other } else { first }
+}
+
 /// True where a distance is so small beside the surface that no other part of it is likely to be meant.
-pub(super) fn is_close(surface: &Surface, domain: UvBox, uv: DVec2, distance: f64) -> bool {
-    let (_, du, dv) = surface.jet1(uv);
-    let size = domain.size();
+pub(super) fn is_close(terrain: &Terrain<'_>, uv: DVec2, distance: f64) -> bool {
+    let (_, du, dv) = terrain.surface.jet1(terrain.inside(uv));
+    let size = terrain.domain.size();
     let extent = |d: DVec3, size: f64| if size.is_finite() { d.length() * size } else { f64::INFINITY };
     let least = extent(du, size.x).min(extent(dv, size.y));
     distance <= 1e-5 * if least.is_finite() { least } else { du.length().max(dv.length()) }
 }
 
-/// Goes down from `start` inside the domain; closed directions have no border.
-pub(super) fn descend(
-    surface: &Surface,
-    periods: [Option<f64>; 2],
-    domain: UvBox,
-    p: DVec3,
-    start: DVec2,
-) -> Inversion {
-    let mut open = domain;
-    for axis in 0..2 {
-        if periods[axis].is_some() {
-            open.min[axis] = f64::NEG_INFINITY;
-            open.max[axis] = f64::INFINITY;
-        }
+/// Goes down from `start`, over creases where that leads further down.
+pub(super) fn descend(terrain: &Terrain<'_>, p: DVec3, start: DVec2) -> Inversion {
+    let start = terrain.inside(start);
+    let mut cell = terrain.cell(start);
+    let mut best = descend_within(terrain, cell, p, start);
+    for _ in 0..CROSSINGS {
+        let next = terrain
+            .beyond(best.uv, cell)
+            .map(|start| (terrain.cell(start), start))
+            .map(|(cell, start)| (cell, descend_within(terrain, cell, p, start)))
+            .filter(|(_, found)| found.distance < best.distance * (1.0 - 1e-9))
+            .min_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
+        let Some(next) = next else { break };
+        (cell, best) = next;
     }
+    best
+}
+
+/// Goes down inside a smooth cell.
+fn descend_within(terrain: &Terrain<'_>, open: UvBox, p: DVec3, start: DVec2) -> Inversion {
     let mut uv = open.clamp(start);
-    let mut jet = surface.jet(uv);
+    let mut jet = terrain.jet(uv);
     let mut height = (jet.p - p).length_squared();
     let mut damping = 0.0;
     for _ in 0..60 {
@@ -188,12 +223,12 @@ pub(super) fn descend(
         if next == uv {
             break;
         }
-        let next_jet = surface.jet(next);
+        let next_jet = terrain.jet(next);
         let next_height = (next_jet.p - p).length_squared();
         if next_height < height {
             (uv, jet, height) = (next, next_jet, next_height);
             // After an undamped step this short the next one is all rounding.
-            let short = (step / domain.size()).abs().max_element() <= 1e-9;
+            let short = (step / terrain.domain.size()).abs().max_element() <= 1e-9;
             if full && damping == 0.0 && short {
                 break;
             }
@@ -207,7 +242,7 @@ pub(super) fn descend(
         }
         damping = if damping == 0.0 { 1e-2 } else { damping * 10.0 };
     }
-    polished(surface, p, open, Inversion { uv, distance: height.sqrt() }, &jet)
+    polished(terrain, p, open, Inversion { uv, distance: height.sqrt() }, &jet)
 }
 
 /// One more Newton step where the point is off the surface: near the foot the distance itself hardly changes, so that
@@ -216,14 +251,14 @@ pub(super) fn descend(
 // Never inlined: within `descend` the optimiser of rustc 1.95 (vectorisation of straight code, at level 3) returned a
 // wrong v for a point exactly on the surface; the inversion tests show it in release builds.
 #[inline(never)]
-fn polished(surface: &Surface, p: DVec3, open: UvBox, found: Inversion, jet: &SurfaceJet) -> Inversion {
+fn polished(terrain: &Terrain<'_>, p: DVec3, open: UvBox, found: Inversion, jet: &SurfaceJet) -> Inversion {
     let Some((step, true)) = newton_step(jet, p, 0.0, found.uv, open) else { return found };
     let moved = (jet.du * step.x).length() + (jet.dv * step.y).length();
     if moved > 1e-5 * found.distance {
         return found;
     }
     let uv = open.clamp(found.uv + step);
-    let distance = surface.point(uv).distance(p);
+    let distance = terrain.point(uv).distance(p);
     if distance <= found.distance * (1.0 + 1e-13) { Inversion { uv, distance } } else { found }
 }
 
