@@ -2,13 +2,13 @@
 
 use chordal_read::ReadError;
 use chordal_write::WriteError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a job wrote nothing.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
-    #[error("{}: {source}", path.display())]
+    #[error("{}", read_sentence(path, source))]
     Read { path: PathBuf, source: ReadError },
     #[error("{}: {source}", path.display())]
     Write { path: PathBuf, source: WriteError },
@@ -33,6 +33,18 @@ pub enum JobError {
     Cancelled { path: PathBuf },
     #[error("no pool of {threads} threads: {reason}")]
     Threads { threads: usize, reason: String },
+}
+
+/// Where the reader names the file by its stem, the path has named it already.
+fn read_sentence(path: &Path, source: &ReadError) -> String {
+    let sentence = source.to_string();
+    if matches!(source, ReadError::Io { .. }) {
+        return sentence;
+    }
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let rest = sentence.strip_prefix(&stem).filter(|rest| rest.starts_with(' '));
+    let sentence = rest.map_or_else(|| sentence.clone(), |rest| format!("the file{rest}"));
+    format!("{}: {sentence}", path.display())
 }
 
 fn but_holds(loose: &usize) -> String {

@@ -55,7 +55,7 @@ pub fn resolve(
         }
     };
     let largest = size.largest_coordinate();
-    if !(largest < LARGEST) {
+    if largest.is_nan() || largest >= LARGEST {
         return Err(too_large(model, input));
     }
     let floor = FLOOR_ULPS * f64::EPSILON * largest;
