@@ -1,50 +1,100 @@
 //! Enclosures of second derivatives over boxes of parameter space: what every proof of a facet rests on.
 //!
-//! A box is covered by *pieces*, one for each smooth cell of the surface that it meets. A piece holds the exact second
-//! derivatives at its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
-//! Cells of a NURBS surface are its Bézier patches (rational ones subdivided, because their bound is looser).
+//! A box is covered by *pieces*, one for each smooth cell of the surface that it meets. A piece holds the second derivatives at
+//! its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
+//! Cells of a NURBS surface are its Bézier patches (rational ones subdivided), in homogeneous coordinates.
 
 use crate::{Curve, NurbsSurface, Range, Surface, UvBox};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 
 mod net;
 
-/// All vectors within `radius` of `center`.
+/// All homogeneous vectors within `radius` of `center`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ball {
-    pub center: DVec3,
+pub struct Ball4 {
+    pub center: DVec4,
     pub radius: f64,
 }
 
-impl Ball {
-    /// All vectors no longer than `radius`.
-    pub fn around_zero(radius: f64) -> Self {
-        Self { center: DVec3::ZERO, radius }
-    }
-
-    /// The largest |w·x| of a vector x inside, for a unit vector w.
-    fn reach(&self, w: DVec3) -> f64 {
-        self.center.dot(w).abs() + self.radius
+impl Ball4 {
+    /// All vectors no longer than `radius`, without a weight.
+    fn around_zero(radius: f64) -> Self {
+        Self { center: DVec4::ZERO, radius }
     }
 }
 
-/// Second derivatives over a smooth piece of a surface.
+/// A smooth cell of a surface: derivatives of its homogeneous form (A, w), measured from `origin`, S = origin + A/w.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Cell {
+    origin: DVec3,
+    center: DVec2,
+    /// uu, uv, vv at the centre.
+    second: [DVec4; 3],
+    /// Enclosures of uuu, uuv, uvv, vvv over the cell, around their values at the centre.
+    third: [Ball4; 4],
+    least_weight: f64,
+    /// Bounds of |w_u| and |w_v|.
+    weight_rate: DVec2,
+    /// Bounds of |Suu|, |Suv|, |Svv|.
+    norms: [f64; 3],
+}
+
+impl Cell {
+    fn piece(&self, b: UvBox) -> Piece {
+        let step = b.center() - self.center;
+        let [uuu, uuv, uvv, vvv] = self.third.map(|ball| ball.center);
+        let [uu, uv, vv] = self.second;
+        Piece {
+            origin: self.origin,
+            second: [uu + uuu * step.x + uuv * step.y, uv + uuv * step.x + uvv * step.y, vv + uvv * step.x + vvv * step.y],
+            third: self.third,
+            half: b.size() * 0.5,
+            offset: step.abs(),
+            least_weight: self.least_weight,
+            weight_rate: self.weight_rate,
+            norms: self.norms,
+        }
+    }
+}
+
+/// Second derivatives of the homogeneous form (A, w) over a part of a smooth cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Suu, Suv, Svv at the middle.
-    pub second: [DVec3; 3],
-    /// Enclosures of Suuu, Suuv, Suvv, Svvv.
-    pub third: [Ball; 4],
+    /// A is measured from here.
+    origin: DVec3,
+    /// uu, uv, vv in the middle of the piece.
+    second: [DVec4; 3],
+    third: [Ball4; 4],
     /// Half the extent in u and v.
-    pub half: DVec2,
+    half: DVec2,
+    /// How far the middle may lie from where `second` was known, which adds to its uncertainty.
+    offset: DVec2,
+    /// A lower bound of the weight.
+    pub least_weight: f64,
+    /// Upper bounds of the weight's rates of change.
+    pub weight_rate: DVec2,
+    /// Upper bounds of |Suu|, |Suv|, |Svv|.
+    pub norms: [f64; 3],
 }
 
 impl Piece {
-    /// w·(Suu, Suv, Svv) at the middle, and how far they stray from that over the piece.
-    pub fn along(&self, w: DVec3) -> ([f64; 3], [f64; 3]) {
-        let [uuu, uuv, uvv, vvv] = self.third.map(|ball| ball.reach(w));
-        let DVec2 { x: hu, y: hv } = self.half;
-        (self.second.map(|s| s.dot(w)), [uuu * hu + uuv * hv, uuv * hu + uvv * hv, uvv * hu + vvv * hv])
+    /// The second derivatives of w·(A − (anchor − origin) w) in the middle, and how far they stray from that over the piece.
+    pub fn along(&self, w: DVec3, anchor: DVec3) -> ([f64; 3], [f64; 3]) {
+        self.along_homogeneous(w.extend(-w.dot(anchor - self.origin)))
+    }
+
+    /// The same for the weight itself.
+    pub fn weight(&self) -> ([f64; 3], [f64; 3]) {
+        self.along_homogeneous(DVec4::W)
+    }
+
+    fn along_homogeneous(&self, w: DVec4) -> ([f64; 3], [f64; 3]) {
+        let length = w.length();
+        let at_center = self.third.map(|ball| ball.center.dot(w).abs());
+        let stray = self.third.map(|ball| ball.radius * length);
+        let (h, far) = (self.half, self.half + self.offset);
+        let reach = |i: usize| at_center[i] * h.x + at_center[i + 1] * h.y + stray[i] * far.x + stray[i + 1] * far.y;
+        (self.second.map(|s| s.dot(w)), [reach(0), reach(1), reach(2)])
     }
 }
 
@@ -59,13 +109,13 @@ struct ProfileTable {
     jumps: Vec<f64>,
 }
 
-/// Third derivatives over the cells of a NURBS surface.
+/// The cells of a NURBS surface.
 #[derive(Clone, Debug)]
 struct CellTable {
     breaks_u: Vec<f64>,
     breaks_v: Vec<f64>,
     /// Cell (i, j) at `i * (breaks_v.len() - 1) + j`.
-    third: Vec<[Ball; 4]>,
+    cells: Vec<Cell>,
     /// Jumps of Su across `breaks_u[i]` and of Sv across `breaks_v[j]`, the largest along the line.
     jumps_u: Vec<f64>,
     jumps_v: Vec<f64>,
@@ -91,8 +141,9 @@ pub struct SurfaceBounds<'a> {
 }
 
 impl<'a> SurfaceBounds<'a> {
-    /// Prepares bounds for boxes inside `domain`, which may reach over the seam of a closed surface.
-    pub fn new(surface: &'a Surface, domain: UvBox) -> Self {
+    /// Prepares bounds for boxes inside `domain`, which may reach over the seam of a closed surface. Effort is spent so that
+    /// they are tight for facets whose error is about `resolution`.
+    pub fn new(surface: &'a Surface, domain: UvBox, resolution: f64) -> Self {
         let wrap = Wrap::of(surface);
         let inside = |range: Range, wrap: Option<Range>| match wrap {
             Some(base) if range.start < base.start || range.end > base.end => base,
@@ -102,7 +153,7 @@ impl<'a> SurfaceBounds<'a> {
         let prepared = match surface {
             Surface::Extrusion { profile, .. } => Prepared::Profile(ProfileTable::new(profile, base.u())),
             Surface::Revolution { profile, .. } => Prepared::Profile(ProfileTable::new(profile, base.v())),
-            Surface::Nurbs(nurbs) => CellTable::new(nurbs, base).map_or(Prepared::Unknown, Prepared::Cells),
+            Surface::Nurbs(nurbs) => CellTable::new(nurbs, base, resolution).map_or(Prepared::Unknown, Prepared::Cells),
             Surface::Offset { .. } => Prepared::Unknown,
             _ => Prepared::Elementary,
         };
@@ -173,7 +224,7 @@ impl<'a> SurfaceBounds<'a> {
                     for j in j0..j1 {
                         let v =
                             Range::new(b.min.y.max(table.breaks_v[j]), b.max.y.min(table.breaks_v[j + 1]));
-                        self.push(UvBox::from_ranges(u, v), table.third[i * columns + j], out);
+                        out.push(table.cells[i * columns + j].piece(UvBox::from_ranges(u, v)));
                     }
                 }
                 let largest = |jumps: &[f64], from: usize, to: usize| {
@@ -184,26 +235,35 @@ impl<'a> SurfaceBounds<'a> {
         }
     }
 
-    fn push(&self, b: UvBox, third: [Ball; 4], out: &mut Vec<Piece>) {
+    /// A piece of a surface that is known by its second derivatives in the middle and bounds of the third.
+    fn push(&self, b: UvBox, third: [f64; 4], out: &mut Vec<Piece>) {
         let jet = self.surface.jet(b.center());
-        out.push(Piece { second: [jet.duu, jet.duv, jet.dvv], third, half: b.size() * 0.5 });
+        let half = b.size() * 0.5;
+        let norm = |d: DVec3, i: usize| d.length() + third[i] * half.x + third[i + 1] * half.y;
+        out.push(Piece {
+            origin: DVec3::ZERO,
+            second: [jet.duu, jet.duv, jet.dvv].map(|d| d.extend(0.0)),
+            third: third.map(Ball4::around_zero),
+            half,
+            offset: DVec2::ZERO,
+            least_weight: 1.0,
+            weight_rate: DVec2::ZERO,
+            norms: [norm(jet.duu, 0), norm(jet.duv, 1), norm(jet.dvv, 2)],
+        });
     }
 
     /// Third derivatives of surfaces that are trigonometric in u (and v).
-    fn elementary_third(&self, b: UvBox) -> [Ball; 4] {
-        let ball = Ball::around_zero;
+    fn elementary_third(&self, b: UvBox) -> [f64; 4] {
         match self.surface {
-            Surface::Cylinder { radius, .. } => [ball(*radius), ball(0.0), ball(0.0), ball(0.0)],
+            Surface::Cylinder { radius, .. } => [*radius, 0.0, 0.0, 0.0],
             Surface::Cone { radius, half_angle, .. } => {
                 let t = half_angle.tan();
                 let r = (radius + b.min.y * t).abs().max((radius + b.max.y * t).abs());
-                [ball(r), ball(t.abs()), ball(0.0), ball(0.0)]
+                [r, t.abs(), 0.0, 0.0]
             }
-            Surface::Sphere { radius, .. } => [ball(*radius); 4],
-            Surface::Torus { major, minor, .. } => {
-                [ball(major + minor), ball(*minor), ball(*minor), ball(*minor)]
-            }
-            _ => [ball(0.0); 4],
+            Surface::Sphere { radius, .. } => [*radius; 4],
+            Surface::Torus { major, minor, .. } => [major + minor, *minor, *minor, *minor],
+            _ => [0.0; 4],
         }
     }
 
@@ -215,17 +275,15 @@ impl<'a> SurfaceBounds<'a> {
         for i in from..to {
             let range = Range::new(along.start.max(table.breaks[i]), along.end.min(table.breaks[i + 1]));
             let [first, second, third] = table.norms[i];
-            let ball = Ball::around_zero;
             if i > from {
                 jump = jump.max(table.jumps[i]);
             }
             if extrusion {
-                let zero = ball(0.0);
-                self.push(UvBox::from_ranges(range, b.v()), [ball(third), zero, zero, zero], out);
+                self.push(UvBox::from_ranges(range, b.v()), [third, 0.0, 0.0, 0.0], out);
             } else {
                 let piece = UvBox::from_ranges(b.u(), range);
                 let radius = self.largest_radius(piece, first);
-                self.push(piece, [ball(radius), ball(first), ball(second), ball(third)], out);
+                self.push(piece, [radius, first, second, third], out);
             }
         }
         if extrusion { DVec2::new(jump, 0.0) } else { DVec2::new(0.0, jump) }
@@ -341,11 +399,14 @@ impl ProfileTable {
 }
 
 impl CellTable {
-    /// Rational cells are this many times finer in each direction: their bound over a whole patch is loose.
-    const RATIONAL_PARTS: usize = 3;
+    /// Slack that a cell may add to a facet as large as itself, as a share of the resolution.
+    const SLACK: f64 = 0.1;
+    /// Patches are cut into no more parts than this in each direction, and surfaces into no more cells.
+    const MAX_PARTS: f64 = 8.0;
+    const MAX_CELLS: f64 = 20_000.0;
 
     /// `None` where a weight is not positive: nothing can be bounded then.
-    fn new(surface: &NurbsSurface, domain: UvBox) -> Option<Self> {
+    fn new(surface: &NurbsSurface, domain: UvBox, resolution: f64) -> Option<Self> {
         let patches = surface.bezier_patches(domain);
         if patches.iter().any(|(_, p)| p.weights.as_ref().is_some_and(|w| w.iter().any(|&w| w <= 0.0))) {
             return None;
@@ -358,19 +419,19 @@ impl CellTable {
         let mut spans_v: Vec<f64> = patches.iter().flat_map(|(b, _)| [b.min.y, b.max.y]).collect();
         distinct(&mut spans_u);
         distinct(&mut spans_v);
-        let parts = if surface.weights().is_some() { Self::RATIONAL_PARTS } else { 1 };
+        // The slack of a cell shrinks with the fourth power of its size.
+        let slack = patches.iter().map(|(span, patch)| net::slack(patch, *span)).fold(0.0, f64::max);
+        let most = (Self::MAX_CELLS / patches.len() as f64).sqrt().clamp(1.0, Self::MAX_PARTS);
+        let parts = (slack / (Self::SLACK * resolution)).powf(0.25).ceil().clamp(1.0, most) as usize;
         let columns = (spans_v.len() - 1) * parts;
-        let mut third = vec![[Ball::default(); 4]; (spans_u.len() - 1) * parts * columns];
+        let mut cells = vec![Cell::default(); (spans_u.len() - 1) * parts * columns];
         let mut jumps_u = vec![0.0; (spans_u.len() - 1) * parts + 1];
         let mut jumps_v = vec![0.0; columns + 1];
         let rows = spans_v.len() - 1;
         for (k, (span, patch)) in patches.iter().enumerate() {
             let (i, j) = (k / rows, k % rows);
-            for a in 0..parts {
-                for b in 0..parts {
-                    third[(i * parts + a) * columns + j * parts + b] =
-                        net::third_derivatives(patch, *span, (a, b), parts);
-                }
+            for (c, cell) in net::cells(patch, *span, parts).into_iter().enumerate() {
+                cells[(i * parts + c / parts) * columns + j * parts + c % parts] = cell;
             }
             if i > 0 {
                 let jump = net::jump_u(&patches[k - rows], &patches[k]);
@@ -384,7 +445,7 @@ impl CellTable {
         Some(Self {
             breaks_u: subdivided(&spans_u, parts),
             breaks_v: subdivided(&spans_v, parts),
-            third,
+            cells,
             jumps_u,
             jumps_v,
         })

@@ -56,13 +56,8 @@ pub fn facet_bound(
         Surface::Sphere { frame, radius } => elementary::sphere(facet, frame.origin, *radius),
         Surface::Torus { frame, major, minor } if major > minor => {
             let own = elementary::torus(facet, frame, *major, *minor, enough);
-            // Facets long against the tube's radius are better judged by derivatives.
-            if own.error <= enough {
-                own
-            } else {
-                let general = general::bound(bounds, facet, enough, scratch);
-                if general.error < own.error { general } else { own }
-            }
+            // Facets long against the tube's radius are beyond it: derivatives must do.
+            if own.error.is_finite() { own } else { general::bound(bounds, facet, enough, scratch) }
         }
         _ => general::bound(bounds, facet, enough, scratch),
     };

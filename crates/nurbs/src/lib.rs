@@ -40,7 +40,7 @@ mod vector;
 mod zoo;
 
 pub use bezier::{BezierCurve, BezierPatch};
-pub use bounds::{Ball, Piece, SurfaceBounds, Wrap};
+pub use bounds::{Ball4, Piece, SurfaceBounds, Wrap};
 pub use box3::Box3;
 pub use convert::{NurbsParameters, ParameterMap};
 pub use curve::{CompositeSegment, Curve, CurveJet};

@@ -140,7 +140,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         if shape == Shape::Doubly {
             work.place_interior();
         }
-        let bounds = SurfaceBounds::new(context.surface.surface, uv_box);
+        let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
         let deadline = options.face_timeout.map(|t| started + t);
         let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, how.accept);
         let verdict = prover.refine(&mut work)?;

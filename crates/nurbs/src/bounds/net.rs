@@ -1,9 +1,9 @@
-//! Enclosures of third derivatives from the control nets of Bézier patches.
+//! Enclosures of second and third derivatives from the control nets of Bézier patches, in homogeneous coordinates.
 //!
-//! Polynomial: the derivative's own control net encloses it. Rational, S = A/w with A measured from a point near the
-//! patch: differentiating A = S w gives S^(ij) = (A^(ij) − Σ binom binom S^(ab) w^(i−a, j−b)) / w, bounded term by term.
+//! A derivative's own control net encloses it. Rational patches are not divided: what a proof needs of S = A/w is
+//! n·(S − a) = n·(A − a w)/w, so it is enough to know the derivatives of the polynomial (A, w).
 
-use super::Ball;
+use super::{Ball4, Cell};
 use crate::{BezierPatch, UvBox};
 use glam::{DVec2, DVec3, DVec4};
 
@@ -24,15 +24,16 @@ impl Net {
         Self { degree: patch.degree, points }
     }
 
-    fn columns(&self) -> usize {
-        self.degree[1] + 1
+    /// Index distances: (lines across `axis`, points along it, step along, step to the next line).
+    fn strides(&self, axis: usize) -> (usize, usize, usize, usize) {
+        let (rows, columns) = (self.degree[0] + 1, self.degree[1] + 1);
+        if axis == 0 { (columns, rows, columns, 1) } else { (rows, columns, 1, columns) }
     }
 
     /// The net over the part from `a` to `b` of the unit interval in direction `axis`.
     fn restrict(&mut self, axis: usize, a: f64, b: f64) {
-        let (rows, columns) = (self.degree[0] + 1, self.columns());
-        let (lines, count, stride, step) =
-            if axis == 0 { (columns, rows, columns, 1) } else { (rows, columns, 1, columns) };
+        let (lines, count, stride, step) = self.strides(axis);
+        let t = if a < 1.0 { (b - a) / (1.0 - a) } else { 0.0 };
         for line in 0..lines {
             let at = |i: usize| line * step + i * stride;
             // Keep the part right of a, then of that the part left of b.
@@ -41,7 +42,6 @@ impl Net {
                     self.points[at(i)] = self.points[at(i)].lerp(self.points[at(i + 1)], a);
                 }
             }
-            let t = if a < 1.0 { (b - a) / (1.0 - a) } else { 0.0 };
             for level in 1..count {
                 for i in (level..count).rev() {
                     self.points[at(i)] = self.points[at(i - 1)].lerp(self.points[at(i)], t);
@@ -50,25 +50,15 @@ impl Net {
         }
     }
 
-    /// The net of the derivative, `times[axis]` times by each parameter, over a box of this size.
-    fn derivative(&self, times: [usize; 2], size: DVec2) -> Net {
-        let mut net = Net { degree: self.degree, points: self.points.clone() };
-        for axis in 0..2 {
-            for _ in 0..times[axis] {
-                net = net.difference(axis, if axis == 0 { size.x } else { size.y });
-            }
-        }
-        net
-    }
-
-    fn difference(&self, axis: usize, length: f64) -> Net {
+    /// The net of the derivative along `axis`, over a box of this length in that direction.
+    fn derivative(&self, axis: usize, length: f64) -> Net {
         if self.degree[axis] == 0 {
             return Net { degree: [0, 0], points: vec![DVec4::ZERO] };
         }
         let mut degree = self.degree;
         degree[axis] -= 1;
         let factor = self.degree[axis] as f64 / length;
-        let columns = self.columns();
+        let columns = self.degree[1] + 1;
         let step = if axis == 0 { columns } else { 1 };
         let mut points = Vec::with_capacity((degree[0] + 1) * (degree[1] + 1));
         for i in 0..=degree[0] {
@@ -80,14 +70,30 @@ impl Net {
         Net { degree, points }
     }
 
-    fn ball(&self) -> Ball {
-        let center = self.points.iter().map(|p| p.truncate()).sum::<DVec3>() / self.points.len() as f64;
-        let radius = self.points.iter().fold(0.0f64, |m, p| m.max((p.truncate() - center).length()));
-        Ball { center, radius }
+    /// The value in the middle of the box.
+    fn middle(&self) -> DVec4 {
+        let [m, n] = self.degree;
+        let mut sum = DVec4::ZERO;
+        let mut scale_u = 0.5f64.powi(m as i32 + n as i32);
+        for i in 0..=m {
+            let mut scale = scale_u;
+            for j in 0..=n {
+                sum += self.points[i * (n + 1) + j] * scale;
+                scale *= (n - j) as f64 / (j + 1) as f64;
+            }
+            scale_u *= (m - i) as f64 / (i + 1) as f64;
+        }
+        sum
+    }
+
+    fn ball(&self) -> Ball4 {
+        let center = self.middle();
+        let radius = self.points.iter().fold(0.0f64, |m, p| m.max((*p - center).length_squared())).sqrt();
+        Ball4 { center, radius }
     }
 
     fn norm(&self) -> f64 {
-        self.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length()))
+        self.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length_squared())).sqrt()
     }
 
     fn weight_norm(&self) -> f64 {
@@ -95,59 +101,58 @@ impl Net {
     }
 }
 
-/// Suuu, Suuv, Suvv, Svvv over cell (a, b) of `parts` × `parts` of the patch over `span`.
-pub(super) fn third_derivatives(
-    patch: &BezierPatch,
-    span: UvBox,
-    (a, b): (usize, usize),
-    parts: usize,
-) -> [Ball; 4] {
-    const THIRD: [[usize; 2]; 4] = [[3, 0], [2, 1], [1, 2], [0, 3]];
+/// The cells of `parts` × `parts` of the patch over `span`, row by row.
+pub(super) fn cells(patch: &BezierPatch, span: UvBox, parts: usize) -> Vec<Cell> {
     let size = span.size() / parts as f64;
     let middle = patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64;
-    let mut net = Net::new(patch, middle);
-    if parts > 1 {
-        let part = |k: usize| (k as f64 / parts as f64, (k + 1) as f64 / parts as f64);
-        net.restrict(0, part(a).0, part(a).1);
-        net.restrict(1, part(b).0, part(b).1);
-    }
-    if patch.weights.is_none() {
-        return THIRD.map(|times| net.derivative(times, size).ball());
-    }
-    // Measure from the middle of the cell: what multiplies the weights' derivatives is then as small as can be.
-    let center = net.points.iter().map(|p| p.truncate() / p.w).sum::<DVec3>() / net.points.len() as f64;
-    for p in &mut net.points {
-        *p -= (center * p.w).extend(0.0);
-    }
-    THIRD.map(|[i, j]| Ball::around_zero(rational(&net, size, i, j)))
-}
-
-/// A bound of |S^(i,j)| over the net.
-fn rational(net: &Net, size: DVec2, i: usize, j: usize) -> f64 {
-    const BINOMIAL: [[f64; 4]; 4] = [[1., 0., 0., 0.], [1., 1., 0., 0.], [1., 2., 1., 0.], [1., 3., 3., 1.]];
-    let lowest = net.points.iter().fold(f64::INFINITY, |m, p| m.min(p.w));
-    let mut s = [[0.0; 4]; 4];
-    let mut w = [[0.0; 4]; 4];
-    for a in 0..=i {
-        for b in 0..=j {
-            if (a, b) == (0, 0) {
-                s[0][0] = net.points.iter().fold(0.0f64, |m, p| m.max((p.truncate() / p.w).length()));
-                continue;
+    let whole = Net::new(patch, middle);
+    let part = |k: usize| (k as f64 / parts as f64, (k + 1) as f64 / parts as f64);
+    let mut cells = Vec::with_capacity(parts * parts);
+    for a in 0..parts {
+        for b in 0..parts {
+            let mut net = Net { degree: whole.degree, points: whole.points.clone() };
+            if parts > 1 {
+                net.restrict(0, part(a).0, part(a).1);
+                net.restrict(1, part(b).0, part(b).1);
             }
-            let derivative = net.derivative([a, b], size);
-            w[a][b] = derivative.weight_norm();
-            let mut sum = derivative.norm();
-            for k in 0..=a {
-                for l in 0..=b {
-                    if (k, l) != (a, b) {
-                        sum += BINOMIAL[a][k] * BINOMIAL[b][l] * s[k][l] * w[a - k][b - l];
-                    }
-                }
-            }
-            s[a][b] = sum / lowest;
+            let corner = span.min + DVec2::new(a as f64, b as f64) * size;
+            cells.push(cell(&net, middle, UvBox::new(corner, corner + size)));
         }
     }
-    s[i][j]
+    cells
+}
+
+/// What the uncertainty of the third derivatives over a whole patch adds to the bound of a facet as large as the patch.
+pub(super) fn slack(patch: &BezierPatch, span: UvBox) -> f64 {
+    let middle = patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64;
+    let size = span.size();
+    let cell = cell(&Net::new(patch, middle), middle, span);
+    let [uuu, uuv, uvv, vvv] = cell.third.map(|ball| ball.radius);
+    let DVec2 { x, y } = size;
+    (uuu * x * x * x + 3.0 * uuv * x * x * y + 3.0 * uvv * x * y * y + vvv * y * y * y) / (16.0 * cell.least_weight)
+}
+
+fn cell(net: &Net, origin: DVec3, over: UvBox) -> Cell {
+    let size = over.size();
+    let (du, dv) = (net.derivative(0, size.x), net.derivative(1, size.y));
+    let (duu, duv, dvv) = (du.derivative(0, size.x), du.derivative(1, size.y), dv.derivative(1, size.y));
+    let third = [duu.derivative(0, size.x), duu.derivative(1, size.y), duv.derivative(1, size.y), dvv.derivative(1, size.y)];
+    let least_weight = net.points.iter().fold(f64::INFINITY, |m, p| m.min(p.w));
+    let extent = net.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length() / p.w.abs()));
+    let rate = |d: &Net| (d.norm() + extent * d.weight_norm()) / least_weight;
+    let (s_u, s_v) = (rate(&du), rate(&dv));
+    let (w_u, w_v) = (du.weight_norm(), dv.weight_norm());
+    // A_uu = S_uu w + 2 S_u w_u + S w_uu, and so on.
+    let norm = |d: &Net, mixed: f64| (d.norm() + mixed + extent * d.weight_norm()) / least_weight;
+    Cell {
+        origin,
+        center: over.center(),
+        second: [duu.middle(), duv.middle(), dvv.middle()],
+        third: third.map(|net| net.ball()),
+        least_weight,
+        weight_rate: DVec2::new(w_u, w_v),
+        norms: [norm(&duu, 2.0 * s_u * w_u), norm(&duv, s_u * w_v + s_v * w_u), norm(&dvv, 2.0 * s_v * w_v)],
+    }
 }
 
 /// The largest jump of Su between two patches that follow each other in u; 0 where it is only rounding.
@@ -156,12 +161,7 @@ pub(super) fn jump_u(left: &(UvBox, BezierPatch), right: &(UvBox, BezierPatch)) 
         let [m, n] = patch.degree;
         let row = |i: usize, j: usize| i * (n + 1) + j;
         let factor = m as f64 / span.size().x;
-        end_rates(
-            (0..=n).map(|j| if last { (row(m - 1, j), row(m, j)) } else { (row(0, j), row(1, j)) }),
-            patch,
-            factor,
-            last,
-        )
+        end_rates((0..=n).map(|j| if last { (row(m - 1, j), row(m, j)) } else { (row(0, j), row(1, j)) }), patch, factor, last)
     };
     largest_jump(&rate(left, true), &rate(right, false))
 }
@@ -172,23 +172,13 @@ pub(super) fn jump_v(left: &(UvBox, BezierPatch), right: &(UvBox, BezierPatch)) 
         let [m, n] = patch.degree;
         let row = |i: usize, j: usize| i * (n + 1) + j;
         let factor = n as f64 / span.size().y;
-        end_rates(
-            (0..=m).map(|i| if last { (row(i, n - 1), row(i, n)) } else { (row(i, 0), row(i, 1)) }),
-            patch,
-            factor,
-            last,
-        )
+        end_rates((0..=m).map(|i| if last { (row(i, n - 1), row(i, n)) } else { (row(i, 0), row(i, 1)) }), patch, factor, last)
     };
     largest_jump(&rate(left, true), &rate(right, false))
 }
 
 /// The derivative across an end of a patch at its control points; of a rational one in projected form.
-fn end_rates(
-    pairs: impl Iterator<Item = (usize, usize)>,
-    patch: &BezierPatch,
-    factor: f64,
-    last: bool,
-) -> Vec<DVec3> {
+fn end_rates(pairs: impl Iterator<Item = (usize, usize)>, patch: &BezierPatch, factor: f64, last: bool) -> Vec<DVec3> {
     pairs
         .map(|(a, b)| {
             let d = (patch.points[b] - patch.points[a]) * factor;

@@ -77,13 +77,11 @@ fn general_norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
     }
     let uv = inside;
     let mut pieces = Vec::new();
-    let jump = SurfaceBounds::new(surface, uv).pieces(uv, &mut pieces);
+    let jump = SurfaceBounds::new(surface, uv, f64::INFINITY).pieces(uv, &mut pieces);
     let mut second = [0.0f64; 3];
     for piece in &pieces {
-        let half = piece.half;
-        for (k, bound) in second.iter_mut().enumerate() {
-            let reach = |i: usize| piece.third[i].center.length() + piece.third[i].radius;
-            *bound = bound.max(piece.second[k].length() + reach(k) * half.x + reach(k + 1) * half.y);
+        for (bound, norm) in second.iter_mut().zip(piece.norms) {
+            *bound = bound.max(norm);
         }
     }
     let (_, du, dv) = surface.jet1(uv.center());

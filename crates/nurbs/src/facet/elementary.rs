@@ -152,8 +152,11 @@ pub(super) fn torus(facet: &Facet, frame: &Frame, major: f64, minor: f64, enough
         if worst > 0.7 * minor {
             return FacetBound::NONE;
         }
-        if bound.error <= enough || worst > enough || parts >= 32 {
+        if bound.error <= enough || worst > enough {
             return bound;
+        }
+        if parts >= 32 {
+            return FacetBound::NONE;
         }
         parts *= 2;
     }

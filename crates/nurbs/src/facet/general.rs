@@ -4,7 +4,7 @@
 //! n the facet's unit normal, d_ij = p_j − p_i, λ barycentric coordinates, e = S − L (zero at the corners).
 //!
 //! **Along n.** For a quadratic f = n·S the error of linear interpolation is exactly −½ Σ_{i<j} λ_i λ_j h_ij with
-//! h_ij = D²f\[d_ij, d_ij\]. For any other f the second derivatives are split into a middle (treated so) and a
+//! h_ij = D²f\[d_ij, d_ij\]. (For rational surfaces f is the polynomial w n·(S − a).) For any other f the second derivatives are split into a middle (treated so) and a
 //! deviation r over T (which adds at most ⅛(r_uu R_u² + 2 r_uv R_u R_v + r_vv R_v²), R the extent of T; this follows
 //! from Taylor's formula with integral remainder and Σ λ_i (u − u_i)² ≤ R_u²/4). Where that is not enough, e is evaluated
 //! on a lattice of k² small triangles and only what lies between its points is bounded so: k² times less.
@@ -18,7 +18,7 @@ use super::{Facet, FacetBound, lattice};
 use crate::{Piece, SurfaceBounds, UvBox};
 use glam::{DVec2, DVec3};
 
-/// Second derivatives of w·S over the pieces: the middle of the enclosure and how far it reaches, for uu, uv, vv.
+/// Second derivatives of g = w·(A − a w) over the pieces: the middle of the enclosure and how far it reaches, for uu, uv, vv.
 #[derive(Clone, Copy)]
 struct Form {
     middle: [f64; 3],
@@ -26,11 +26,20 @@ struct Form {
 }
 
 impl Form {
-    fn new(pieces: &[Piece], w: DVec3) -> Self {
+    /// Of w·(S − anchor), times the weight.
+    fn new(pieces: &[Piece], w: DVec3, anchor: DVec3) -> Self {
+        Self::enclosing(pieces.iter().map(|piece| piece.along(w, anchor)))
+    }
+
+    /// Of the weight.
+    fn weight(pieces: &[Piece]) -> Self {
+        Self::enclosing(pieces.iter().map(Piece::weight))
+    }
+
+    fn enclosing(forms: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Self {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
-        for piece in pieces {
-            let (value, reach) = piece.along(w);
+        for (value, reach) in forms {
             for i in 0..3 {
                 low[i] = low[i].min(value[i] - reach[i]);
                 high[i] = high[i].max(value[i] + reach[i]);
@@ -40,6 +49,14 @@ impl Form {
             middle: std::array::from_fn(|i| 0.5 * (low[i] + high[i])),
             reach: std::array::from_fn(|i| 0.5 * (high[i] - low[i])),
         }
+    }
+
+    fn divided(mut self, by: f64) -> Self {
+        for i in 0..3 {
+            self.middle[i] /= by;
+            self.reach[i] /= by;
+        }
+        self
     }
 
     fn middle_along(&self, d: DVec2) -> f64 {
@@ -117,10 +134,14 @@ pub(super) fn bound(
         kinks: 0.25 * (kink.x * size.x + kink.y * size.y),
         kink,
     };
-    let normal = Form::new(pieces, n);
+    // g is as large as the weight times the error: it is divided by the least weight.
+    let least_weight = pieces.iter().fold(f64::INFINITY, |m, p| m.min(p.least_weight));
+    let form = |w: DVec3, anchor: DVec3| Form::new(pieces, w, anchor).divided(least_weight);
+    let normal = form(n, facet.xyz[0]);
     let h = frame.d.map(|d| normal.middle_along(d));
-    let slope = slope(&normal, &frame, &h);
-    let sideways = frame.m.map(|m| Form::new(pieces, m));
+    let rate = pieces.iter().fold(DVec2::ZERO, |m, p| m.max(p.weight_rate)) / least_weight;
+    let slope = slope(&normal, &frame, &h) + weight_slope(&frame, rate, enough);
+    let sideways: [Form; 3] = std::array::from_fn(|i| form(frame.m[i], facet.xyz[(i + 1) % 3]));
     let quick = quick_parts(&frame, &normal, &h, &sideways);
     let bound = combine(facet, &quick, slope);
     // Where even the least that the enclosures allow on an edge is too much, looking closer is in vain.
@@ -130,7 +151,9 @@ pub(super) fn bound(
     }
     let mut best = bound;
     for parts in [4, 8, 16] {
-        let (closer, seen) = sampled_parts(bounds, facet, &frame, &normal, &sideways, parts);
+        let weights = weight_bend(&Form::weight(pieces), &frame, parts) / least_weight;
+        let (mut closer, seen) = sampled_parts(bounds, facet, &frame, &normal, &sideways, parts);
+        closer.grow(1.0 + weights);
         let bound = combine(facet, &closer, slope);
         best.error = best.error.min(bound.error);
         best.edges = std::array::from_fn(|i| best.edges[i].min(bound.edges[i]));
@@ -139,6 +162,33 @@ pub(super) fn bound(
         }
     }
     best
+}
+
+impl Parts {
+    fn grow(&mut self, factor: f64) {
+        self.along *= factor;
+        for values in [&mut self.along_edges, &mut self.sideways, &mut self.bends] {
+            values.iter_mut().for_each(|v| *v *= factor);
+        }
+    }
+}
+
+/// How far the weight strays from linear between the points of a lattice: a value between samples may be larger by that share.
+fn weight_bend(weight: &Form, frame: &Frame3, parts: usize) -> f64 {
+    let worst = frame.d.iter().fold(0.0f64, |m, &d| m.max(weight.middle_along(d).abs()));
+    (worst / 6.0 + weight.reach_along(frame.size) / 8.0) / (parts * parts) as f64
+}
+
+/// What a changing weight adds to the slope of (g/w): at most |g/w|·|w'|/w per length.
+fn weight_slope(frame: &Frame3, rate: DVec2, error: f64) -> f64 {
+    if rate == DVec2::ZERO {
+        return 0.0;
+    }
+    let along = |i: usize| error * (rate.x * frame.d[i].x.abs() + rate.y * frame.d[i].y.abs()) / frame.length[i];
+    (0..3).fold(f64::INFINITY, |best, i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        best.min((along(j) + along(k)) * frame.length[j] * frame.length[k] / frame.area2)
+    })
 }
 
 /// From the second derivatives alone.
