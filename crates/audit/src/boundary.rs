@@ -1,0 +1,196 @@
+//! The boundary of a face: exactly the chords of its loops' edges, and cuts whose two sides fit.
+//!
+//! With every triangle turned the same way in the chart and the boundary being the loops (and cuts along which the
+//! surface is glued to itself), the triangles cover the face, and nothing else, once. A hole that was filled lacks its chords; a region
+//! that is missing ends where the face has no edge.
+
+use crate::halves::Half;
+use crate::part::Context;
+use chordal_brep::{Face, Loop};
+use chordal_mesh::FaceMesh;
+
+/// What bounds a face in its chart.
+#[derive(Debug, Default)]
+pub(crate) struct Boundary {
+    /// Chords of the face's loops.
+    pub chords: Vec<Half>,
+    /// The two sides of a cut that only this face knows.
+    pub cuts: Vec<[Half; 2]>,
+    /// Half-edges that are neither.
+    pub stray: Vec<Half>,
+    /// Chords of loops along which no triangle runs, and an edge that has one.
+    pub missing: usize,
+    pub missing_edge: Option<u32>,
+}
+
+/// A chord of a loop: from position to position, and its edge.
+#[derive(Clone, Copy)]
+struct Chord {
+    from: u32,
+    to: u32,
+    edge: Option<u32>,
+}
+
+/// Sorts half-edges by what they are.
+pub(crate) fn boundary(context: &Context<'_>, face: &Face, of_face: &FaceMesh, single: &[Half]) -> Boundary {
+    let position = |corner: u32| of_face.corners[corner as usize].position;
+    let ends = |h: &Half| (position(h.a), position(h.b));
+    let mut halves = single.to_vec();
+    halves.sort_unstable_by_key(|h| (ends(h), h.a, h.b));
+    let keys: Vec<(u32, u32)> = halves.iter().map(ends).collect();
+    let mut found = Boundary::default();
+    let mut pool = Pool { taken: vec![false; keys.len()], keys };
+    for a_loop in &face.loops {
+        let mut chords = loop_chords(context, a_loop, &mut found);
+        if face.flipped {
+            reverse(&mut chords);
+        }
+        claim_loop(&mut pool, chords, &mut found);
+    }
+    found.chords = (0..halves.len()).filter(|&i| pool.taken[i]).map(|i| halves[i]).collect();
+    pair_cuts(&mut pool, &halves, of_face, &mut found);
+    found.stray = (0..halves.len()).filter(|&i| !pool.taken[i]).map(|i| halves[i]).collect();
+    found
+}
+
+fn reverse(chords: &mut [Chord]) {
+    for chord in chords {
+        std::mem::swap(&mut chord.from, &mut chord.to);
+    }
+}
+
+/// Half-edges sorted by their positions, each to be used once.
+struct Pool {
+    keys: Vec<(u32, u32)>,
+    taken: Vec<bool>,
+}
+
+impl Pool {
+    fn take(&mut self, from: u32, to: u32) -> Option<usize> {
+        let start = self.keys.partition_point(|&k| k < (from, to));
+        let free =
+            (start..self.keys.len()).take_while(|&i| self.keys[i] == (from, to)).find(|&i| !self.taken[i])?;
+        self.taken[free] = true;
+        Some(free)
+    }
+
+    /// Takes the half-edges of all chords that have one; returns them and the chords that have none.
+    fn take_all(&mut self, chords: &[Chord]) -> (Vec<usize>, Vec<Chord>) {
+        let mut taken = Vec::with_capacity(chords.len());
+        let mut missing = Vec::new();
+        for chord in chords {
+            match self.take(chord.from, chord.to) {
+                Some(i) => taken.push(i),
+                None => missing.push(*chord),
+            }
+        }
+        (taken, missing)
+    }
+
+    fn put_back(&mut self, taken: &[usize]) {
+        taken.iter().for_each(|&i| self.taken[i] = false);
+    }
+}
+
+/// Books the chords of one loop. Files give loops the wrong way round; a loop must only run one way as a whole.
+fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) {
+    let (taken, missing) = pool.take_all(&chords);
+    if missing.is_empty() {
+        return;
+    }
+    pool.put_back(&taken);
+    reverse(&mut chords);
+    let (taken_back, missing_back) = pool.take_all(&chords);
+    if missing_back.is_empty() {
+        return;
+    }
+    // There and back again along the same edges encloses nothing and may be left out.
+    if encloses_nothing(&chords) && taken.is_empty() && taken_back.is_empty() {
+        return;
+    }
+    let mut missing = missing_back;
+    if taken.len() > taken_back.len() {
+        pool.put_back(&taken_back);
+        reverse(&mut chords);
+        missing = pool.take_all(&chords).1;
+    }
+    found.missing += missing.len();
+    found.missing_edge = found.missing_edge.or(missing[0].edge);
+}
+
+fn encloses_nothing(chords: &[Chord]) -> bool {
+    let mut there: Vec<_> = chords.iter().map(|c| (c.from, c.to)).collect();
+    let mut back: Vec<_> = chords.iter().map(|c| (c.to, c.from)).collect();
+    there.sort_unstable();
+    back.sort_unstable();
+    there == back
+}
+
+fn loop_chords(context: &Context<'_>, a_loop: &Loop, found: &mut Boundary) -> Vec<Chord> {
+    let Context { part, mesh, .. } = context;
+    let mut chords = Vec::new();
+    match a_loop {
+        Loop::Vertex(_) => {}
+        Loop::Polygon { vertices, .. } => {
+            let n = vertices.len();
+            let at = |i: usize| vertices[i % n].0;
+            let place = |v: u32| context.vertex_at[v as usize];
+            for i in 0..n {
+                if at(i) == at(i + 1) {
+                    continue;
+                }
+                match (place(at(i)), place(at(i + 1))) {
+                    (Some(from), Some(to)) => {
+                        chords.push(Chord { from, to, edge: None });
+                    }
+                    _ => found.missing += 1,
+                }
+            }
+        }
+        Loop::Edges { coedges, .. } => {
+            for coedge in coedges {
+                let line = mesh.edges.get(coedge.edge.index()).map_or(&[][..], Vec::as_slice);
+                if line.is_empty() && part.edges[coedge.edge.index()].curve.is_some() {
+                    // Only there-and-back loops may lack their polylines.
+                    let uses = coedges.iter().filter(|c| c.edge == coedge.edge).count();
+                    if uses != 2 {
+                        found.missing += 1;
+                        found.missing_edge = found.missing_edge.or(Some(coedge.edge.0));
+                    }
+                }
+                let edge = Some(coedge.edge.0);
+                chords.extend(line.windows(2).map(|w| {
+                    let (from, to) = if coedge.forward { (w[0], w[1]) } else { (w[1], w[0]) };
+                    Chord { from, to, edge }
+                }));
+            }
+        }
+    }
+    chords
+}
+
+/// Pairs what is left over: the two sides of a cut run over the same positions in opposite directions.
+fn pair_cuts(pool: &mut Pool, halves: &[Half], of_face: &FaceMesh, found: &mut Boundary) {
+    let uv = |corner: u32| of_face.corners[corner as usize].uv;
+    for i in 0..halves.len() {
+        if pool.taken[i] {
+            continue;
+        }
+        let (from, to) = pool.keys[i];
+        let start = pool.keys.partition_point(|&k| k < (to, from));
+        let candidates = (start..halves.len())
+            .take_while(|&j| pool.keys[j] == (to, from))
+            .filter(|&j| !pool.taken[j] && j != i);
+        // Of several the one that fits best: moved by the same vector at both ends.
+        let misfit = |j: usize| {
+            let at_a = uv(halves[j].b) - uv(halves[i].a);
+            let at_b = uv(halves[j].a) - uv(halves[i].b);
+            at_a.distance_squared(at_b)
+        };
+        if let Some(j) = candidates.min_by(|&j, &k| misfit(j).total_cmp(&misfit(k))) {
+            pool.taken[i] = true;
+            pool.taken[j] = true;
+            found.cuts.push([halves[i], halves[j]]);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Cuts: where a face's triangles are glued to each other along a line that is no edge of the model.
+//!
+//! A seam's two sides lie whole periods apart in the chart: nothing is between them. At a pole, triangles whose corners are
+//! not three vertices were left out; the sliver of surface between the two sides of such a cut has a single mesh edge over it
+//! and needs a bound of its own:
+//!
+//! ```text
+//!   p_k ══ pole ══ p_k+1        one vertex
+//!     ╲             ╱
+//!      ╲  sliver   ╱            S over the triangle against the edge P–X
+//!       ╲         ╱
+//!        ╲___x___╱
+//! ```
+//!
+//! The bound is that of the vector error e = S − L against the affine map L of the sliver onto the edge (see
+//! `chordal_nurbs::facet_bound` for the formula along one direction).
+
+use crate::face::Chart;
+use crate::halves::Half;
+use chordal_nurbs::{DVec2, DVec3, Piece, Surface, SurfaceBounds, UvBox};
+
+/// What is between the two sides of a cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cut {
+    /// Nothing: one side is the other moved by whole periods.
+    Seam,
+    /// A sliver at a pole, whose distance from its edge is at most this.
+    Sliver(f64),
+}
+
+/// How far apart in the chart (relative to its extent) two sides of a seam may be by rounding.
+const SAME_UV: f64 = 1e-9;
+
+pub(crate) fn judge(
+    chart: &Chart<'_>,
+    bounds: Option<&SurfaceBounds<'_>>,
+    sides: &[Half; 2],
+    scratch: &mut Vec<Piece>,
+) -> Cut {
+    let [first, second] = sides;
+    let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
+    let (a, b) = (uv(first.a), uv(first.b));
+    let (b2, a2) = (uv(second.a), uv(second.b));
+    let size = chart.uv_box.size();
+    let close = |d: DVec2| d.abs().cmple(SAME_UV * (size + a.abs().max(b.abs()))).all();
+    // Whichever end needs no pole tells by how many periods the sides are apart.
+    let at_a = chart.whole_turns(a2 - a);
+    let at_b = chart.whole_turns(b2 - b);
+    let (off_a, off_b) = (a2 - a - at_a, b2 - b - at_b);
+    if at_a == at_b && close(off_a) && close(off_b) {
+        return Cut::Seam;
+    }
+    // The central projection of a sphere or a cone needs no parameters at a pole.
+    if matches!(chart.surface, Surface::Sphere { .. } | Surface::Cone { .. }) && chart.touches_pole(first) {
+        return Cut::Sliver(0.0);
+    }
+    let Some(bounds) = bounds else { return Cut::Sliver(f64::NAN) };
+    let turns = if close(off_b) { at_b } else { at_a };
+    let (a2, b2) = (a2 - turns, b2 - turns);
+    let (p, q) = (chart.point(a), chart.point(b));
+    let halves = [([a, b, b2], [p, q, q]), ([a, b2, a2], [p, q, p])];
+    let error = halves
+        .iter()
+        .filter(|(uv, _)| uv[0] != uv[1] && uv[1] != uv[2] && uv[2] != uv[0])
+        .map(|(uv, ends)| vector_bound(bounds, *uv, *ends, chart, scratch))
+        .fold(0.0, f64::max);
+    Cut::Sliver(error)
+}
+
+/// An upper bound of ‖S − L‖ over a triangle of the chart, L affine with the given images of the corners.
+fn vector_bound(
+    bounds: &SurfaceBounds<'_>,
+    uv: [DVec2; 3],
+    images: [DVec3; 3],
+    chart: &Chart<'_>,
+    pieces: &mut Vec<Piece>,
+) -> f64 {
+    let uv_box = UvBox::from_points(uv);
+    pieces.clear();
+    let kink = bounds.pieces(uv_box, pieces);
+    if pieces.is_empty() {
+        return f64::INFINITY;
+    }
+    let size = uv_box.size();
+    let d = [uv[2] - uv[1], uv[0] - uv[2], uv[1] - uv[0]];
+    let kinks = 0.25 * (kink.x * size.x + kink.y * size.y);
+    let along = |w: DVec3| {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for piece in pieces.iter() {
+            let (value, reach) = piece.along(w);
+            for i in 0..3 {
+                low[i] = low[i].min(value[i] - reach[i]);
+                high[i] = high[i].max(value[i] + reach[i]);
+            }
+        }
+        let h = d.map(|d| {
+            let m = |i: usize| 0.5 * (low[i] + high[i]);
+            (m(0) * d.x * d.x + 2.0 * m(1) * d.x * d.y + m(2) * d.y * d.y).abs()
+        });
+        let r = |i: usize| 0.5 * (high[i] - low[i]);
+        let reach = r(0) * size.x * size.x + 2.0 * r(1) * size.x * size.y + r(2) * size.y * size.y;
+        // Σ λ_i λ_j |h_ij| / 2 is at most the largest |h| times Σ λ_i λ_j / 2 ≤ 1/6.
+        h[0].max(h[1]).max(h[2]) / 6.0 + reach / 8.0
+    };
+    let by_axis = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
+    let corners = (0..3).map(|i| chart.point(uv[i]).distance(images[i])).fold(0.0, f64::max);
+    by_axis.length() + kinks + corners
+}

@@ -1,0 +1,183 @@
+//! Edges: every polyline runs along its curve, in order, without a sample left out.
+//!
+//! The parameter of each sample is found again from its position, so that the bound of each chord rests on nothing that
+//! the mesher said.
+
+use crate::report::{Problem, ProblemKind, Subject};
+use chordal_brep::{Edge, Part};
+use chordal_mesh::{Origin, PartMesh};
+use chordal_nurbs::{Curve, CurveInverter, DVec3, Range};
+use rayon::prelude::*;
+
+/// Distances below this part of the tolerance are charged to the gap and not called misplaced.
+pub(crate) const CHARGED: f64 = 1e-3;
+
+/// Rounding of positions, relative to the largest number that they were computed from.
+pub(crate) const ROUNDING: f64 = 256.0 * f64::EPSILON;
+
+/// What was recomputed about one edge.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EdgeAudit {
+    /// The largest distance between a chord and the curve.
+    pub error: f64,
+    /// The largest distance of an end vertex, or of a sample, from the curve.
+    pub gap: f64,
+    pub misplaced: usize,
+    pub problem: Option<Problem>,
+}
+
+/// Audits the polylines of all edges.
+pub(crate) fn audit_edges(part: &Part, mesh: &PartMesh, scale: f64, allowed: f64) -> Vec<EdgeAudit> {
+    (0..part.edges.len())
+        .into_par_iter()
+        .with_min_len(64)
+        .map(|e| match mesh.edges.get(e) {
+            Some(line) if !line.is_empty() => audit_edge(part, mesh, e, line, scale, allowed),
+            _ => EdgeAudit::default(),
+        })
+        .collect()
+}
+
+fn audit_edge(
+    part: &Part,
+    mesh: &PartMesh,
+    index: usize,
+    line: &[u32],
+    scale: f64,
+    allowed: f64,
+) -> EdgeAudit {
+    let edge = &part.edges[index];
+    let mut audit = EdgeAudit::default();
+    if let Some(what) = wrong_origins(mesh, edge, index, line) {
+        audit.problem = Some(problem(edge, index, ProblemKind::BrokenPolyline, what));
+        return audit;
+    }
+    let Some(curve) = edge.curve.as_deref() else {
+        let what = "is a single point and has a polyline".to_owned();
+        audit.problem = Some(problem(edge, index, ProblemKind::BrokenPolyline, what));
+        return audit;
+    };
+    let at = |i: usize| mesh.positions[line[i] as usize];
+    let last = line.len() - 1;
+    let ends = [edge.range.start, edge.range.end].map(|t| curve.point(t));
+    audit.gap = at(0).distance(ends[0]).max(at(last).distance(ends[1]));
+    let rounding = ROUNDING * (scale + magnitude(curve));
+    let mut tracer = Tracer { curve, range: edge.range, t: edge.range.start, p: ends[0], rounding };
+    for i in 1..=last {
+        let before = tracer.t;
+        if i < last {
+            let distance = tracer.follow(at(i));
+            if distance > rounding {
+                audit.gap = audit.gap.max(distance);
+            }
+            if distance > rounding + allowed {
+                audit.misplaced += 1;
+                let what = format!("has a vertex {distance:.3e} off its curve");
+                audit.problem = Some(problem(edge, index, ProblemKind::MisplacedVertex, what));
+            }
+        } else {
+            tracer.t = edge.range.end;
+        }
+        if !(tracer.t > before) {
+            let what = format!("is not sampled in order at chord {i}");
+            audit.problem.get_or_insert(problem(edge, index, ProblemKind::BrokenPolyline, what));
+            audit.error = f64::INFINITY;
+            return audit;
+        }
+        audit.error = audit.error.max(curve.chord_error(before, tracer.t));
+    }
+    audit
+}
+
+fn problem(edge: &Edge, index: usize, kind: ProblemKind, what: String) -> Problem {
+    let sentence = format!("edge {} {what}", edge.source);
+    Problem { subject: Subject::Edge(index as u32), kind, sentence }
+}
+
+/// A polyline runs from the start vertex over the samples 1, 2, … to the end vertex.
+fn wrong_origins(mesh: &PartMesh, edge: &Edge, index: usize, line: &[u32]) -> Option<String> {
+    let last = line.len() - 1;
+    if last == 0 {
+        return Some("has a polyline of one point".into());
+    }
+    let wrong = (0..=last).find(|&i| {
+        let wanted = match i {
+            0 => Origin::Vertex(edge.start.0),
+            i if i == last => Origin::Vertex(edge.end.0),
+            i => Origin::Edge { edge: index as u32, index: i as u32 },
+        };
+        mesh.origins[line[i] as usize] != wanted
+    })?;
+    Some(format!("does not have its own sample at place {wrong} of its polyline"))
+}
+
+/// The size of the numbers that a curve is evaluated from.
+fn magnitude(curve: &Curve) -> f64 {
+    match curve {
+        Curve::Circle { frame, radius } => frame.origin.length() + radius.abs(),
+        Curve::Ellipse { frame, a, b } | Curve::Hyperbola { frame, a, b } => {
+            frame.origin.length() + a.abs().max(b.abs())
+        }
+        Curve::Parabola { frame, focal } => frame.origin.length() + focal.abs(),
+        Curve::Line { origin, .. } => origin.length(),
+        Curve::Composite(segments) => segments.iter().map(|s| magnitude(&s.curve)).fold(0.0, f64::max),
+        Curve::Offset { basis, distance, .. } => magnitude(basis) + distance.abs(),
+        Curve::OnSurface { surface, .. } => crate::face::magnitude(surface),
+        _ => 0.0,
+    }
+}
+
+/// Finds the parameters of points that follow each other along a curve.
+struct Tracer<'a> {
+    curve: &'a Curve,
+    range: Range,
+    /// The parameter and the point found last.
+    t: f64,
+    p: DVec3,
+    rounding: f64,
+}
+
+impl Tracer<'_> {
+    /// Steps to the next point; returns its distance from the curve.
+    fn follow(&mut self, p: DVec3) -> f64 {
+        let before = self.t;
+        let speed = self.curve.jet(before).d1.length();
+        let step = p.distance(self.p) / speed;
+        let room = self.range.end - before;
+        let guess = before + if step.is_finite() { step.min(0.5 * room) } else { 0.5 * room };
+        let (mut t, mut distance) = match self.curve {
+            Curve::Line { .. } | Curve::Circle { .. } => {
+                let t = self.range.clamp(self.curve.invert(p, Some(guess)));
+                (t, self.curve.point(t).distance(p))
+            }
+            _ => self.newton(p, guess),
+        };
+        if distance > self.rounding || t <= before {
+            let ahead = CurveInverter::new(self.curve, Range::new(before, self.range.end)).invert(p, None);
+            if t <= before || ahead.distance < distance {
+                (t, distance) = (ahead.t, ahead.distance);
+            }
+        }
+        self.t = t;
+        self.p = p;
+        distance
+    }
+
+    /// Gauss–Newton: quadratic here, because the point lies on the curve.
+    fn newton(&self, p: DVec3, guess: f64) -> (f64, f64) {
+        let mut t = guess;
+        let mut distance = f64::INFINITY;
+        for _ in 0..16 {
+            let jet = self.curve.jet(t);
+            let r = p - jet.p;
+            distance = r.length();
+            let step = r.dot(jet.d1) / jet.d1.length_squared();
+            let next = self.range.clamp(t + step);
+            if !next.is_finite() || (next - t).abs() <= f64::EPSILON * t.abs() {
+                break;
+            }
+            t = next;
+        }
+        (t, self.curve.point(t).distance(p).min(distance))
+    }
+}

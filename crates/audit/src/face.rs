@@ -1,0 +1,443 @@
+//! One face: its corners lie on the surface, its triangles cover it once, and each is within its bound.
+
+use crate::boundary::{Boundary, boundary};
+use crate::cuts::{self, Cut};
+use crate::edges::ROUNDING;
+use crate::halves::{Half, Halves};
+use crate::part::Context;
+use crate::report::{FaceAudit, Problem, ProblemKind, Subject};
+use crate::shell::half_key;
+use chordal_brep::{Face, FaceGeometry, Loop};
+use chordal_mesh::{FaceMesh, Origin};
+use chordal_nurbs::{
+    DVec2, DVec3, Facet, Pole, Surface, SurfaceBounds, SurfaceInverter, UvBox, Wrap, facet_bound,
+};
+use rayon::prelude::*;
+use std::borrow::Cow;
+
+/// Triangles or corners handled by one task.
+const CHUNK: usize = 4096;
+
+/// Normals are recomputed to this.
+const NORMAL: f64 = 1e-6;
+
+/// What was found out about one face.
+#[derive(Debug, Default)]
+pub(crate) struct FaceFindings {
+    pub audit: FaceAudit,
+    /// The recomputed error before the rounding of the written coordinates; NaN where nothing is proven.
+    pub error: f64,
+    pub rounding: f64,
+    pub degenerate: usize,
+    pub duplicates: usize,
+    pub misplaced: usize,
+    /// The share of the enclosed volume.
+    pub volume: f64,
+    /// Half-edges between positions that other faces may have, too.
+    pub shared: Vec<(u64, bool)>,
+    /// Triangles over such positions only, sorted corners.
+    pub shared_triangles: Vec<[u32; 3]>,
+    pub problems: Vec<Problem>,
+}
+
+/// A face's mesh in the parameters of its surface.
+pub(crate) struct Chart<'a> {
+    pub surface: &'a Surface,
+    pub mesh: &'a FaceMesh,
+    pub uv_box: UvBox,
+    wrap: Wrap,
+    periods: [Option<f64>; 2],
+    poles: Vec<Pole>,
+    /// The surface at every corner.
+    xyz: Vec<DVec3>,
+    /// Rounding of points on this surface.
+    rounding: f64,
+}
+
+/// The size of the numbers that a surface is evaluated from, beyond the size of the mesh on it.
+pub(crate) fn magnitude(surface: &Surface) -> f64 {
+    match surface {
+        Surface::Plane { frame } => frame.origin.length(),
+        Surface::Cylinder { frame, radius }
+        | Surface::Cone { frame, radius, .. }
+        | Surface::Sphere { frame, radius } => frame.origin.length() + radius.abs(),
+        Surface::Torus { frame, major, minor } => frame.origin.length() + major.abs() + minor.abs(),
+        Surface::Offset { basis, distance } => magnitude(basis) + distance.abs(),
+        Surface::Revolution { axis_origin, .. } => axis_origin.length(),
+        _ => 0.0,
+    }
+}
+
+impl<'a> Chart<'a> {
+    fn new(context: &Context<'_>, surface: &'a Surface, mesh: &'a FaceMesh) -> Self {
+        Self {
+            surface,
+            mesh,
+            uv_box: UvBox::from_points(mesh.corners.iter().map(|c| c.uv)),
+            wrap: Wrap::of(surface),
+            periods: surface.periods(),
+            poles: surface.poles_within(0.1 * context.options.tolerance),
+            xyz: Vec::new(),
+            rounding: ROUNDING * (context.scale + magnitude(surface)),
+        }
+    }
+
+    pub fn point(&self, p_uv: DVec2) -> DVec3 {
+        self.surface.point(self.wrap.apply(p_uv))
+    }
+
+    /// The nearest vector of whole periods.
+    pub fn whole_turns(&self, d: DVec2) -> DVec2 {
+        let turn = |d: f64, period: Option<f64>| period.map_or(0.0, |p| p * (d / p).round());
+        DVec2::new(turn(d.x, self.periods[0]), turn(d.y, self.periods[1]))
+    }
+
+    /// One end of the half-edge lies on a pole.
+    pub fn touches_pole(&self, half: &Half) -> bool {
+        [half.a, half.b].iter().any(|&c| {
+            let uv = self.mesh.corners[c as usize].uv;
+            self.poles.iter().any(|pole| {
+                (uv[pole.axis] - pole.value).abs()
+                    <= 1e-6 * (1.0 + pole.value.abs().max(self.uv_box.size()[pole.axis]))
+            })
+        })
+    }
+}
+
+/// The surface that bounds can be given for: offsets of elementary surfaces are elementary themselves.
+fn exact(surface: &Surface) -> Cow<'_, Surface> {
+    match surface {
+        Surface::Offset { .. } => Cow::Owned(surface.clone().simplified()),
+        other => Cow::Borrowed(other),
+    }
+}
+
+/// Audits one face.
+pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
+    let face = &context.part.faces[index];
+    let mesh = &context.mesh.faces[index];
+    let mut found = FaceFindings {
+        audit: FaceAudit { face: index as u32, triangles: mesh.triangles.len(), ..FaceAudit::default() },
+        ..FaceFindings::default()
+    };
+    let mut log = Log { index, face, problems: Vec::new() };
+    if mesh.triangles.is_empty() {
+        if !context.known_missing(index) {
+            log.add(ProblemKind::MissingFace, "has no triangles".into());
+        }
+        found.audit.proven_error = f64::NAN;
+        found.error = f64::NAN;
+        found.problems = log.problems;
+        return found;
+    }
+    let FaceGeometry::Surface(surface) = &face.geometry else {
+        log.add(ProblemKind::Malformed, "has triangles and no surface".into());
+        found.problems = log.problems;
+        return found;
+    };
+    let surface = exact(surface);
+    let mut chart = Chart::new(context, &surface, mesh);
+    found.rounding = chart.rounding;
+    check_corners(context, &mut chart, &mut found, &mut log);
+    let halves = Halves::of(&mesh.triangles, mesh.corners.len());
+    let bounds_of = boundary(context, face, mesh, &halves.single);
+    check_triangles(context, &chart, &mut found, &mut log);
+    check_boundary(context, &bounds_of, &mut log);
+    gather_shared(context, mesh, &halves, &mut found);
+    if found.duplicates > 0 {
+        log.add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
+    }
+    if context.options.proven {
+        prove(context, &chart, &bounds_of, &mut found, &mut log);
+    } else {
+        found.error = f64::NAN;
+    }
+    found.audit.proven_error = found.error + context.options.coordinate_rounding;
+    found.problems = log.problems;
+    found
+}
+
+/// Collects the problems of one face.
+struct Log<'a> {
+    index: usize,
+    face: &'a Face,
+    problems: Vec<Problem>,
+}
+
+impl Log<'_> {
+    fn add(&mut self, kind: ProblemKind, what: String) {
+        let sentence = format!("face {} {what}", self.face.source);
+        self.problems.push(Problem { subject: Subject::Face(self.index as u32), kind, sentence });
+    }
+}
+
+/// What the corners of one task showed.
+#[derive(Clone, Copy, Default)]
+struct CornerFindings {
+    gap: f64,
+    misplaced: usize,
+    farthest: f64,
+    wrong_normals: usize,
+}
+
+/// Recomputes point and normal of every corner.
+fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceFindings, log: &mut Log<'_>) {
+    let sign = if log.face.normal_reversed() { -1.0 } else { 1.0 };
+    let chunks: Vec<(Vec<DVec3>, CornerFindings)> = chart
+        .mesh
+        .corners
+        .par_chunks(CHUNK)
+        .map(|corners| {
+            let mut sum = CornerFindings::default();
+            let xyz = corners.iter().map(|c| {
+                let uv = chart.wrap.apply(c.uv);
+                let (p, du, dv) = chart.surface.jet1(uv);
+                if !normal_agrees(chart.surface, uv, du.cross(dv) * sign, c.normal, sign) {
+                    sum.wrong_normals += 1;
+                }
+                let position = context.mesh.positions[c.position as usize];
+                let distance = p.distance(position);
+                sum.gap = sum.gap.max(distance);
+                if distance > chart.rounding + context.allowed()
+                    && is_misplaced(context, chart, c.position, p)
+                {
+                    sum.misplaced += 1;
+                    sum.farthest = sum.farthest.max(distance);
+                }
+                p
+            });
+            (xyz.collect(), sum)
+        })
+        .collect();
+    let mut wrong = 0;
+    let mut farthest = 0.0f64;
+    for (xyz, sum) in chunks {
+        chart.xyz.extend(xyz);
+        found.audit.gap = found.audit.gap.max(sum.gap);
+        found.misplaced += sum.misplaced;
+        farthest = farthest.max(sum.farthest);
+        wrong += sum.wrong_normals;
+    }
+    found.audit.gap =
+        found.audit.gap.max(loop_edges(log.face).map(|e| context.edges[e].gap).fold(0.0, f64::max));
+    if found.misplaced > 0 {
+        let what = format!(
+            "has {} vertices that are not where its parameters say, up to {farthest:.3e} off",
+            found.misplaced
+        );
+        log.add(ProblemKind::MisplacedVertex, what);
+    }
+    if wrong > 0 {
+        log.add(ProblemKind::WrongNormal, format!("has {wrong} normals that are not the surface's"));
+    }
+}
+
+fn loop_edges(face: &Face) -> impl Iterator<Item = usize> + '_ {
+    face.loops.iter().flat_map(|l| match l {
+        Loop::Edges { coedges, .. } => coedges.iter().map(|c| c.edge.index()).collect(),
+        _ => Vec::new(),
+    })
+}
+
+/// True where a corner far from its point of the surface is the mesh's fault and not the file's: a vertex of the face's own, or
+/// one of an edge that the surface has a nearer point for than the corner's.
+fn is_misplaced(context: &Context<'_>, chart: &Chart<'_>, position: u32, on_surface: DVec3) -> bool {
+    let p = context.mesh.positions[position as usize];
+    let distance = p.distance(on_surface);
+    if matches!(context.mesh.origins[position as usize], Origin::Face(_)) {
+        // Control rows that all but meet are one pole, and one vertex.
+        let pole = chart.poles.iter().any(|pole| pole.point.distance(p) <= 0.1 * context.options.tolerance);
+        return !pole || distance > 0.1 * context.options.tolerance + context.options.coordinate_rounding;
+    }
+    let nearest = SurfaceInverter::new(chart.surface, chart.uv_box).invert(p, None).distance;
+    distance > 2.0 * nearest + 0.1 * context.options.tolerance + context.options.coordinate_rounding
+}
+
+/// The quick normal settles all but degenerate places.
+fn normal_agrees(surface: &Surface, uv: DVec2, cross: DVec3, stated: DVec3, sign: f64) -> bool {
+    let near = |n: DVec3| n.distance_squared(stated) <= NORMAL * NORMAL;
+    if cross.try_normalize().is_some_and(near) {
+        return true;
+    }
+    match surface.normal(uv) {
+        Some(n) => near(n * sign),
+        None => true,
+    }
+}
+
+/// What the triangles of one task showed.
+#[derive(Clone, Copy, Default)]
+struct TriangleFindings {
+    degenerate: usize,
+    folded: usize,
+    volume: f64,
+    least_cosine: f64,
+}
+
+/// Orientation in the chart, area, normals, volume, angles.
+fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFindings, log: &mut Log<'_>) {
+    let reversed = log.face.normal_reversed();
+    let origin = context.mesh.positions[0];
+    let positions = &context.mesh.positions;
+    let corners = &chart.mesh.corners;
+    let check = |triangles: &[[u32; 3]]| {
+        let mut sum = TriangleFindings { least_cosine: 1.0, ..TriangleFindings::default() };
+        for t in triangles {
+            let c = t.map(|c| &corners[c as usize]);
+            let [p, q, r] = c.map(|c| positions[c.position as usize]);
+            sum.volume += (p - origin).dot((q - origin).cross(r - origin));
+            sum.degenerate += usize::from(is_degenerate(c.map(|c| c.position), [p, q, r], chart.rounding));
+            let [a, b, d] = c.map(|c| robust::Coord { x: c.uv.x, y: c.uv.y });
+            let turn = robust::orient2d(a, b, d);
+            let ideal = t.map(|c| chart.xyz[c as usize]);
+            let normal = (ideal[1] - ideal[0]).cross(ideal[2] - ideal[0]);
+            let against = c.iter().all(|c| c.normal.dot(normal) < 0.0);
+            sum.folded += usize::from(if reversed { turn >= 0.0 } else { turn <= 0.0 } || against);
+            for i in 0..3 {
+                let (n, m) = (c[i].normal, c[(i + 1) % 3].normal);
+                if n != DVec3::ZERO && m != DVec3::ZERO {
+                    sum.least_cosine = sum.least_cosine.min(n.dot(m));
+                }
+            }
+        }
+        sum
+    };
+    let sums: Vec<TriangleFindings> = chart.mesh.triangles.par_chunks(CHUNK).map(check).collect();
+    let mut folded = 0;
+    let mut least = 1.0f64;
+    for sum in sums {
+        found.degenerate += sum.degenerate;
+        found.volume += sum.volume / 6.0;
+        folded += sum.folded;
+        least = least.min(sum.least_cosine);
+    }
+    found.audit.max_angle = least.clamp(-1.0, 1.0).acos();
+    if found.degenerate > 0 {
+        log.add(ProblemKind::DegenerateTriangle, format!("has {} triangles without area", found.degenerate));
+    }
+    if folded > 0 {
+        log.add(ProblemKind::FoldedTriangle, format!("has {folded} triangles turned over"));
+    }
+    if let Some(limit) =
+        context.options.angle.filter(|&l| found.audit.max_angle > l * (1.0 + NORMAL) + NORMAL)
+    {
+        let (is, limit) = (found.audit.max_angle.to_degrees(), limit.to_degrees());
+        log.add(
+            ProblemKind::OverAngle,
+            format!("turns by {is:.3}° along a mesh edge, over the limit of {limit:.3}°"),
+        );
+    }
+}
+
+/// Two corners in one place, or a height that is only rounding.
+fn is_degenerate(index: [u32; 3], p: [DVec3; 3], rounding: f64) -> bool {
+    if index[0] == index[1] || index[1] == index[2] || index[2] == index[0] {
+        return true;
+    }
+    let longest = (p[1] - p[0]).length().max((p[2] - p[1]).length()).max((p[0] - p[2]).length());
+    (p[1] - p[0]).cross(p[2] - p[0]).length() <= longest * rounding / 16.0
+}
+
+fn check_boundary(context: &Context<'_>, bounds: &Boundary, log: &mut Log<'_>) {
+    if bounds.missing > 0 {
+        let edge = bounds.missing_edge.map_or(String::new(), |e| {
+            format!(", the first of edge {}", context.part.edges[e as usize].source)
+        });
+        log.add(
+            ProblemKind::MissingChord,
+            format!("is not bounded by {} chords of its edges{edge}", bounds.missing),
+        );
+    }
+    if !bounds.stray.is_empty() {
+        log.add(
+            ProblemKind::StrayBoundary,
+            format!("ends at {} places where it has no edge", bounds.stray.len()),
+        );
+    }
+}
+
+/// Half-edges and triangles that the shell compares with other faces'; duplicates inside this one.
+fn gather_shared(context: &Context<'_>, mesh: &FaceMesh, halves: &Halves, found: &mut FaceFindings) {
+    let position = |c: u32| mesh.corners[c as usize].position;
+    let is_shared = |p: u32| !matches!(context.mesh.origins[p as usize], Origin::Face(_));
+    found.shared.extend(halves.single.iter().map(|h| half_key(position(h.a), position(h.b))));
+    for &(a, b) in &halves.matched {
+        let (a, b) = (position(a), position(b));
+        if is_shared(a) && is_shared(b) {
+            found.shared.extend([half_key(a, b), half_key(b, a)]);
+        }
+    }
+    let sorted = |t: &[u32; 3]| {
+        let mut t = t.map(position);
+        t.sort_unstable();
+        t
+    };
+    let is_inner = |t: &[u32; 3]| t.iter().any(|&p| !is_shared(p));
+    found.shared_triangles = mesh.triangles.iter().map(sorted).filter(|t| !is_inner(t)).collect();
+    if halves.repeated > 0 {
+        let mut inner: Vec<[u32; 3]> = mesh.triangles.iter().map(sorted).filter(is_inner).collect();
+        inner.sort_unstable();
+        found.duplicates = inner.windows(2).filter(|w| w[0] == w[1]).count();
+    }
+}
+
+/// Recomputes the bound of every triangle, of every chord, and of what lies between the two sides of cuts.
+fn prove(
+    context: &Context<'_>,
+    chart: &Chart<'_>,
+    at: &Boundary,
+    found: &mut FaceFindings,
+    log: &mut Log<'_>,
+) {
+    let bounds = SurfaceBounds::new(chart.surface, chart.uv_box);
+    if !bounds.is_bounded() {
+        found.error = f64::NAN;
+        return;
+    }
+    let chords = loop_edges(log.face).map(|e| context.edges[e].error).fold(0.0, f64::max);
+    let mut scratch = Vec::new();
+    let mut is_boundary = vec![[false; 3]; chart.mesh.triangles.len()];
+    let mut mark = |h: &Half| is_boundary[h.triangle as usize][h.side as usize] = true;
+    let mut slivers = 0.0f64;
+    at.chords.iter().chain(&at.stray).for_each(&mut mark);
+    for sides in &at.cuts {
+        match cuts::judge(chart, Some(&bounds), sides, &mut scratch) {
+            Cut::Seam => sides.iter().for_each(&mut mark),
+            Cut::Sliver(error) => slivers = slivers.max(error),
+        }
+    }
+    let facets = facets_error(chart, &bounds, &is_boundary, log.face.normal_reversed());
+    found.error = facets.max(chords).max(slivers);
+    let total = found.error + context.options.coordinate_rounding;
+    let tolerance = context.options.tolerance;
+    if total > tolerance * (1.0 + 1e-9) + chart.rounding {
+        let what = format!(
+            "is off by up to {total:.6e}, over the tolerance of {tolerance:.6e} (facets {facets:.3e}, chords {chords:.3e}, slivers at poles {slivers:.3e})"
+        );
+        log.add(ProblemKind::OverTolerance, what);
+    }
+}
+
+fn facets_error(
+    chart: &Chart<'_>,
+    bounds: &SurfaceBounds<'_>,
+    is_boundary: &[[bool; 3]],
+    reversed: bool,
+) -> f64 {
+    if matches!(chart.surface, Surface::Plane { .. }) {
+        return 0.0;
+    }
+    let bound = |(triangles, flags): (&[[u32; 3]], &[[bool; 3]])| {
+        let mut scratch = Vec::new();
+        let mut worst = 0.0f64;
+        for (t, &b) in triangles.iter().zip(flags) {
+            let (t, boundary) = if reversed { ([t[0], t[2], t[1]], [b[0], b[2], b[1]]) } else { (*t, b) };
+            let uv = t.map(|c| chart.mesh.corners[c as usize].uv);
+            let facet = Facet { uv, xyz: t.map(|c| chart.xyz[c as usize]), boundary };
+            worst = worst.max(facet_bound(bounds, &facet, &mut scratch).error);
+        }
+        worst
+    };
+    let chunks = chart.mesh.triangles.par_chunks(CHUNK).zip(is_boundary.par_chunks(CHUNK));
+    chunks.map(bound).reduce(|| 0.0, f64::max)
+}

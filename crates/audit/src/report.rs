@@ -1,0 +1,166 @@
+//! What is asked of an audit, and what it found.
+
+use std::fmt;
+
+/// What the mesh has to keep, in the part's own units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AuditOptions {
+    /// Largest distance between mesh and surface.
+    pub tolerance: f64,
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians.
+    pub angle: Option<f64>,
+    /// Recompute the error bounds; without it only what needs no proof is checked.
+    pub proven: bool,
+    /// How far writing the coordinates in a shorter format may move a vertex; it is charged to every bound.
+    pub coordinate_rounding: f64,
+}
+
+impl AuditOptions {
+    /// A proven tolerance, no limit of the angle, coordinates as they are.
+    pub fn new(tolerance: f64) -> Self {
+        Self { tolerance, angle: None, proven: true, coordinate_rounding: 0.0 }
+    }
+    pub fn with_angle(mut self, radians: Option<f64>) -> Self {
+        self.angle = radians;
+        self
+    }
+    pub fn with_proven(mut self, proven: bool) -> Self {
+        self.proven = proven;
+        self
+    }
+    pub fn with_coordinate_rounding(mut self, length: f64) -> Self {
+        self.coordinate_rounding = length;
+        self
+    }
+}
+
+/// What the mesher says of one face.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Claim {
+    /// NaN where nothing is claimed to be proven.
+    pub proven_error: f64,
+    pub gap: f64,
+    /// It was said that the face has no triangles, because it failed or has no area.
+    pub missing: bool,
+    /// It has none because it has no area, and the shell is closed without it.
+    pub needless: bool,
+}
+
+/// What a problem was found in; indices are those of the part's vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Subject {
+    Part,
+    Shell(u32),
+    Face(u32),
+    Edge(u32),
+}
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ProblemKind {
+    /// Indices or numbers of the mesh make no sense.
+    Malformed,
+    /// A face has no triangles and nothing was said of it.
+    MissingFace,
+    /// A chord of an edge is no boundary of a face that the edge bounds: a skipped sample, a filled hole.
+    MissingChord,
+    /// Triangles end where the face has no edge: a missing triangle, a T-vertex.
+    StrayBoundary,
+    /// A closed shell's mesh is open.
+    OpenShell,
+    /// Two triangles run along an edge in the same direction.
+    InconsistentEdges,
+    /// More triangles meet at an edge than the model has faces there.
+    NonManifoldEdges,
+    /// The volume has the wrong sign.
+    InsideOut,
+    DegenerateTriangle,
+    DuplicateTriangle,
+    /// A triangle is turned over in the parameters of its face, or against its normals.
+    FoldedTriangle,
+    /// A vertex is not where its origin says.
+    MisplacedVertex,
+    /// The samples of an edge are not those of its curve, in order.
+    BrokenPolyline,
+    /// A corner's normal is not the surface's.
+    WrongNormal,
+    OverTolerance,
+    OverAngle,
+    /// Nothing can be proven about a face although its error was said to be proven.
+    Unproven,
+    /// The recomputed error is larger than the one that was claimed.
+    UnderstatedError,
+    UnderstatedGap,
+}
+
+/// Something wrong, in one sentence.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Problem {
+    pub subject: Subject,
+    pub kind: ProblemKind,
+    pub sentence: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence)
+    }
+}
+
+/// One shell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShellAudit {
+    /// Index of the shell in its part.
+    pub shell: u32,
+    pub closed_in_file: bool,
+    /// Every face of it has triangles, or was said to need none.
+    pub complete: bool,
+    /// No open and no inconsistent edge.
+    pub watertight: bool,
+    pub open_edges: usize,
+    pub inconsistent_edges: usize,
+    pub non_manifold_edges: usize,
+    /// Enclosed, in cubic units of the part; without meaning where the shell is open.
+    pub volume: f64,
+}
+
+/// One face.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FaceAudit {
+    /// Index of the face in its part.
+    pub face: u32,
+    pub triangles: usize,
+    /// Recomputed bound of the two-sided distance between the exact face and its triangles, without the gap; NaN where nothing is
+    /// proven. The rounding of written coordinates is part of it.
+    pub proven_error: f64,
+    /// Largest distance of a vertex from the surface, or of a vertex at an edge's end from the edge's curve.
+    pub gap: f64,
+    /// Largest angle between the exact normals at the two ends of a mesh edge, in radians.
+    pub max_angle: f64,
+}
+
+/// One part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PartAudit {
+    /// Sums over the closed shells that are complete.
+    pub open_edges: usize,
+    /// Sums over all shells.
+    pub inconsistent_edges: usize,
+    pub non_manifold_edges: usize,
+    pub degenerate_triangles: usize,
+    pub duplicate_triangles: usize,
+    pub misplaced_vertices: usize,
+    pub shells: Vec<ShellAudit>,
+    /// One per face of the part, in its order.
+    pub faces: Vec<FaceAudit>,
+    /// In the order of their subjects; at most one of each kind about each.
+    pub problems: Vec<Problem>,
+}
+
+impl PartAudit {
+    /// Nothing is wrong.
+    pub fn clean(&self) -> bool {
+        self.problems.is_empty()
+    }
+}
