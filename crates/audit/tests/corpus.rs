@@ -8,6 +8,7 @@ use std::fmt::Write;
 fn every_model_audits_clean() {
     let mut faults = String::new();
     for name in common::names() {
+        eprintln!("{name}");
         let model = common::load(&name);
         for (index, part) in model.parts.iter().enumerate() {
             let diagonal = common::diagonal(part);
