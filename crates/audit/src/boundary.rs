@@ -12,8 +12,11 @@ use chordal_mesh::FaceMesh;
 /// What bounds a face in its chart.
 #[derive(Debug, Default)]
 pub(crate) struct Boundary {
-    /// Chords of the face's loops.
-    pub chords: Vec<Half>,
+    /// Chords of the face's loops, each with the bound of its distance from its curve.
+    pub chords: Vec<(Half, f64)>,
+    /// Loops that run as the file says, and the other way round.
+    pub forward: usize,
+    pub backward: usize,
     /// The two sides of a cut that only this face knows.
     pub cuts: Vec<[Half; 2]>,
     /// Half-edges that are neither.
@@ -28,7 +31,8 @@ pub(crate) struct Boundary {
 struct Chord {
     from: u32,
     to: u32,
-    edge: Option<u32>,
+    /// The edge and the index of the chord in it; none along a polygon without edges.
+    of: Option<(u32, u32)>,
 }
 
 /// Sorts half-edges by what they are.
@@ -39,7 +43,7 @@ pub(crate) fn boundary(context: &Context<'_>, face: &Face, of_face: &FaceMesh, s
     halves.sort_unstable_by_key(|h| (ends(h), h.a, h.b));
     let keys: Vec<(u32, u32)> = halves.iter().map(ends).collect();
     let mut found = Boundary::default();
-    let mut pool = Pool { taken: vec![false; keys.len()], keys };
+    let mut pool = Pool { taken: vec![None; keys.len()], keys };
     for a_loop in &face.loops {
         let mut chords = loop_chords(context, a_loop, &mut found);
         if face.flipped {
@@ -47,10 +51,15 @@ pub(crate) fn boundary(context: &Context<'_>, face: &Face, of_face: &FaceMesh, s
         }
         claim_loop(&mut pool, chords, &mut found);
     }
-    found.chords = (0..halves.len()).filter(|&i| pool.taken[i]).map(|i| halves[i]).collect();
+    let sag = |i: usize| pool.taken[i].map(|of| (halves[i], of.map_or(0.0, |of| sag_of(context, of))));
+    found.chords = (0..halves.len()).filter_map(sag).collect();
     pair_cuts(&mut pool, &halves, of_face, &mut found);
-    found.stray = (0..halves.len()).filter(|&i| !pool.taken[i]).map(|i| halves[i]).collect();
+    found.stray = (0..halves.len()).filter(|&i| pool.taken[i].is_none()).map(|i| halves[i]).collect();
     found
+}
+
+fn sag_of(context: &Context<'_>, (edge, chord): (u32, u32)) -> f64 {
+    context.edges[edge as usize].sag.get(chord as usize).copied().unwrap_or(f64::INFINITY)
 }
 
 fn reverse(chords: &mut [Chord]) {
@@ -62,15 +71,18 @@ fn reverse(chords: &mut [Chord]) {
 /// Half-edges sorted by their positions, each to be used once.
 struct Pool {
     keys: Vec<(u32, u32)>,
-    taken: Vec<bool>,
+    /// What for: the chord of an edge, or something without one.
+    taken: Vec<Option<Option<(u32, u32)>>>,
 }
 
 impl Pool {
-    fn take(&mut self, from: u32, to: u32) -> Option<usize> {
-        let start = self.keys.partition_point(|&k| k < (from, to));
-        let free =
-            (start..self.keys.len()).take_while(|&i| self.keys[i] == (from, to)).find(|&i| !self.taken[i])?;
-        self.taken[free] = true;
+    fn take(&mut self, chord: &Chord) -> Option<usize> {
+        let key = (chord.from, chord.to);
+        let start = self.keys.partition_point(|&k| k < key);
+        let free = (start..self.keys.len())
+            .take_while(|&i| self.keys[i] == key)
+            .find(|&i| self.taken[i].is_none())?;
+        self.taken[free] = Some(chord.of);
         Some(free)
     }
 
@@ -79,7 +91,7 @@ impl Pool {
         let mut taken = Vec::with_capacity(chords.len());
         let mut missing = Vec::new();
         for chord in chords {
-            match self.take(chord.from, chord.to) {
+            match self.take(chord) {
                 Some(i) => taken.push(i),
                 None => missing.push(*chord),
             }
@@ -88,7 +100,7 @@ impl Pool {
     }
 
     fn put_back(&mut self, taken: &[usize]) {
-        taken.iter().for_each(|&i| self.taken[i] = false);
+        taken.iter().for_each(|&i| self.taken[i] = None);
     }
 }
 
@@ -96,12 +108,14 @@ impl Pool {
 fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) {
     let (taken, missing) = pool.take_all(&chords);
     if missing.is_empty() {
+        found.forward += usize::from(!chords.is_empty());
         return;
     }
     pool.put_back(&taken);
     reverse(&mut chords);
     let (taken_back, missing_back) = pool.take_all(&chords);
     if missing_back.is_empty() {
+        found.backward += 1;
         return;
     }
     // There and back again along the same edges encloses nothing and may be left out.
@@ -115,7 +129,7 @@ fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) {
         missing = pool.take_all(&chords).1;
     }
     found.missing += missing.len();
-    found.missing_edge = found.missing_edge.or(missing[0].edge);
+    found.missing_edge = found.missing_edge.or(missing[0].of.map(|of| of.0));
 }
 
 fn encloses_nothing(chords: &[Chord]) -> bool {
@@ -141,7 +155,7 @@ fn loop_chords(context: &Context<'_>, a_loop: &Loop, found: &mut Boundary) -> Ve
                 }
                 match (place(at(i)), place(at(i + 1))) {
                     (Some(from), Some(to)) => {
-                        chords.push(Chord { from, to, edge: None });
+                        chords.push(Chord { from, to, of: None });
                     }
                     _ => found.missing += 1,
                 }
@@ -158,10 +172,9 @@ fn loop_chords(context: &Context<'_>, a_loop: &Loop, found: &mut Boundary) -> Ve
                         found.missing_edge = found.missing_edge.or(Some(coedge.edge.0));
                     }
                 }
-                let edge = Some(coedge.edge.0);
-                chords.extend(line.windows(2).map(|w| {
+                chords.extend(line.windows(2).enumerate().map(|(i, w)| {
                     let (from, to) = if coedge.forward { (w[0], w[1]) } else { (w[1], w[0]) };
-                    Chord { from, to, edge }
+                    Chord { from, to, of: Some((coedge.edge.0, i as u32)) }
                 }));
             }
         }
@@ -173,14 +186,14 @@ fn loop_chords(context: &Context<'_>, a_loop: &Loop, found: &mut Boundary) -> Ve
 fn pair_cuts(pool: &mut Pool, halves: &[Half], of_face: &FaceMesh, found: &mut Boundary) {
     let uv = |corner: u32| of_face.corners[corner as usize].uv;
     for i in 0..halves.len() {
-        if pool.taken[i] {
+        if pool.taken[i].is_some() {
             continue;
         }
         let (from, to) = pool.keys[i];
         let start = pool.keys.partition_point(|&k| k < (to, from));
         let candidates = (start..halves.len())
             .take_while(|&j| pool.keys[j] == (to, from))
-            .filter(|&j| !pool.taken[j] && j != i);
+            .filter(|&j| pool.taken[j].is_none() && j != i);
         // Of several the one that fits best: moved by the same vector at both ends.
         let misfit = |j: usize| {
             let at_a = uv(halves[j].b) - uv(halves[i].a);
@@ -188,8 +201,8 @@ fn pair_cuts(pool: &mut Pool, halves: &[Half], of_face: &FaceMesh, found: &mut B
             at_a.distance_squared(at_b)
         };
         if let Some(j) = candidates.min_by(|&j, &k| misfit(j).total_cmp(&misfit(k))) {
-            pool.taken[i] = true;
-            pool.taken[j] = true;
+            pool.taken[i] = Some(None);
+            pool.taken[j] = Some(None);
             found.cuts.push([halves[i], halves[j]]);
         }
     }

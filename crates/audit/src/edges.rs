@@ -18,8 +18,8 @@ pub(crate) const ROUNDING: f64 = 256.0 * f64::EPSILON;
 /// What was recomputed about one edge.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeAudit {
-    /// The largest distance between a chord and the curve.
-    pub error: f64,
+    /// Per chord, the bound of its distance from the curve.
+    pub sag: Vec<f64>,
     /// The largest distance of an end vertex, or of a sample, from the curve.
     pub gap: f64,
     pub misplaced: usize,
@@ -81,10 +81,10 @@ fn audit_edge(
         if !(tracer.t > before) {
             let what = format!("is not sampled in order at chord {i}");
             audit.problem.get_or_insert(problem(edge, index, ProblemKind::BrokenPolyline, what));
-            audit.error = f64::INFINITY;
+            audit.sag = vec![f64::INFINITY; last];
             return audit;
         }
-        audit.error = audit.error.max(curve.chord_error(before, tracer.t));
+        audit.sag.push(curve.chord_error(before, tracer.t));
     }
     audit
 }

@@ -52,6 +52,18 @@ pub(crate) struct Chart<'a> {
     xyz: Vec<DVec3>,
     /// Rounding of points on this surface.
     rounding: f64,
+    /// Triangles run clockwise in the chart.
+    turned: bool,
+}
+
+fn turn(mesh: &FaceMesh, t: &[u32; 3]) -> f64 {
+    let [a, b, c] = t.map(|c| mesh.corners[c as usize].uv).map(|uv| robust::Coord { x: uv.x, y: uv.y });
+    robust::orient2d(a, b, c)
+}
+
+/// How many triangles run clockwise in the chart.
+fn turned_triangles(mesh: &FaceMesh) -> usize {
+    mesh.triangles.iter().filter(|t| turn(mesh, t) < 0.0).count()
 }
 
 /// The size of the numbers that a surface is evaluated from, beyond the size of the mesh on it.
@@ -79,6 +91,7 @@ impl<'a> Chart<'a> {
             poles: surface.poles_within(0.1 * context.options.tolerance),
             xyz: Vec::new(),
             rounding: ROUNDING * (context.scale + magnitude(surface)),
+            turned: false,
         }
     }
 
@@ -138,11 +151,12 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     let surface = exact(surface);
     let mut chart = Chart::new(context, &surface, mesh);
     found.rounding = chart.rounding;
+    chart.turned = 2 * turned_triangles(mesh) > mesh.triangles.len();
     check_corners(context, &mut chart, &mut found, &mut log);
     let halves = Halves::of(&mesh.triangles, mesh.corners.len());
     let bounds_of = boundary(context, face, mesh, &halves.single);
     check_triangles(context, &chart, &mut found, &mut log);
-    check_boundary(context, &bounds_of, &mut log);
+    check_boundary(context, &chart, &bounds_of, &mut log);
     gather_shared(context, mesh, &halves, &mut found);
     if found.duplicates > 0 {
         log.add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
@@ -182,7 +196,7 @@ struct CornerFindings {
 
 /// Recomputes point and normal of every corner.
 fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceFindings, log: &mut Log<'_>) {
-    let sign = if log.face.normal_reversed() { -1.0 } else { 1.0 };
+    let sign = if chart.turned { -1.0 } else { 1.0 };
     let chunks: Vec<(Vec<DVec3>, CornerFindings)> = chart
         .mesh
         .corners
@@ -276,7 +290,6 @@ struct TriangleFindings {
 
 /// Orientation in the chart, area, normals, volume, angles.
 fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFindings, log: &mut Log<'_>) {
-    let reversed = log.face.normal_reversed();
     let origin = context.mesh.positions[0];
     let positions = &context.mesh.positions;
     let corners = &chart.mesh.corners;
@@ -287,12 +300,11 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
             let [p, q, r] = c.map(|c| positions[c.position as usize]);
             sum.volume += (p - origin).dot((q - origin).cross(r - origin));
             sum.degenerate += usize::from(is_degenerate(c.map(|c| c.position), [p, q, r], chart.rounding));
-            let [a, b, d] = c.map(|c| robust::Coord { x: c.uv.x, y: c.uv.y });
-            let turn = robust::orient2d(a, b, d);
+            let turn = turn(chart.mesh, t);
             let ideal = t.map(|c| chart.xyz[c as usize]);
             let normal = (ideal[1] - ideal[0]).cross(ideal[2] - ideal[0]);
             let against = c.iter().all(|c| c.normal.dot(normal) < 0.0);
-            sum.folded += usize::from(if reversed { turn >= 0.0 } else { turn <= 0.0 } || against);
+            sum.folded += usize::from(if chart.turned { turn >= 0.0 } else { turn <= 0.0 } || against);
             for i in 0..3 {
                 let (n, m) = (c[i].normal, c[(i + 1) % 3].normal);
                 if n != DVec3::ZERO && m != DVec3::ZERO {
@@ -338,7 +350,12 @@ fn is_degenerate(index: [u32; 3], p: [DVec3; 3], rounding: f64) -> bool {
     (p[1] - p[0]).cross(p[2] - p[0]).length() <= longest * rounding / 16.0
 }
 
-fn check_boundary(context: &Context<'_>, bounds: &Boundary, log: &mut Log<'_>) {
+fn check_boundary(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary, log: &mut Log<'_>) {
+    // Files lie about the sense of a surface or about the direction of a loop, but hardly about both.
+    let against_sense = chart.turned != log.face.normal_reversed();
+    if against_sense && bounds.forward == 0 {
+        log.add(ProblemKind::FoldedTriangle, "is turned over as a whole".into());
+    }
     if bounds.missing > 0 {
         let edge = bounds.missing_edge.map_or(String::new(), |e| {
             format!(", the first of edge {}", context.part.edges[e as usize].source)
@@ -394,19 +411,19 @@ fn prove(
         found.error = f64::NAN;
         return;
     }
-    let chords = loop_edges(log.face).map(|e| context.edges[e].error).fold(0.0, f64::max);
+    let chords = at.chords.iter().map(|c| c.1).fold(0.0, f64::max);
     let mut scratch = Vec::new();
-    let mut is_boundary = vec![[false; 3]; chart.mesh.triangles.len()];
-    let mut mark = |h: &Half| is_boundary[h.triangle as usize][h.side as usize] = true;
     let mut slivers = 0.0f64;
-    at.chords.iter().chain(&at.stray).for_each(&mut mark);
     for sides in &at.cuts {
-        match cuts::judge(chart, Some(&bounds), sides, &mut scratch) {
-            Cut::Seam => sides.iter().for_each(&mut mark),
-            Cut::Sliver(error) => slivers = slivers.max(error),
+        if let Cut::Sliver(error) = cuts::judge(chart, Some(&bounds), sides, &mut scratch) {
+            slivers = slivers.max(error);
         }
     }
-    let facets = facets_error(chart, &bounds, &is_boundary, log.face.normal_reversed());
+    let mut sags = vec![[None; 3]; chart.mesh.triangles.len()];
+    for (half, sag) in &at.chords {
+        sags[half.triangle as usize][half.side as usize] = Some(*sag);
+    }
+    let facets = facets_error(chart, &bounds, &sags, context.enough(log.index));
     found.error = facets.max(chords).max(slivers);
     let total = found.error + context.options.coordinate_rounding;
     let tolerance = context.options.tolerance;
@@ -421,23 +438,23 @@ fn prove(
 fn facets_error(
     chart: &Chart<'_>,
     bounds: &SurfaceBounds<'_>,
-    is_boundary: &[[bool; 3]],
-    reversed: bool,
+    sags: &[[Option<f64>; 3]],
+    enough: f64,
 ) -> f64 {
     if matches!(chart.surface, Surface::Plane { .. }) {
         return 0.0;
     }
-    let bound = |(triangles, flags): (&[[u32; 3]], &[[bool; 3]])| {
+    let bound = |(triangles, sags): (&[[u32; 3]], &[[Option<f64>; 3]])| {
         let mut scratch = Vec::new();
         let mut worst = 0.0f64;
-        for (t, &b) in triangles.iter().zip(flags) {
-            let (t, boundary) = if reversed { ([t[0], t[2], t[1]], [b[0], b[2], b[1]]) } else { (*t, b) };
+        for (t, &s) in triangles.iter().zip(sags) {
+            let (t, sag) = if chart.turned { ([t[0], t[2], t[1]], [s[0], s[2], s[1]]) } else { (*t, s) };
             let uv = t.map(|c| chart.mesh.corners[c as usize].uv);
-            let facet = Facet { uv, xyz: t.map(|c| chart.xyz[c as usize]), boundary };
-            worst = worst.max(facet_bound(bounds, &facet, &mut scratch).error);
+            let facet = Facet { uv, xyz: t.map(|c| chart.xyz[c as usize]), sag };
+            worst = worst.max(facet_bound(bounds, &facet, enough, &mut scratch).error);
         }
         worst
     };
-    let chunks = chart.mesh.triangles.par_chunks(CHUNK).zip(is_boundary.par_chunks(CHUNK));
+    let chunks = chart.mesh.triangles.par_chunks(CHUNK).zip(sags.par_chunks(CHUNK));
     chunks.map(bound).reduce(|| 0.0, f64::max)
 }

@@ -27,6 +27,13 @@ impl Context<'_> {
         CHARGED * self.options.tolerance + self.options.coordinate_rounding
     }
 
+    /// The error that a facet of this face need not be proven to stay below.
+    pub fn enough(&self, face: usize) -> f64 {
+        let tolerance = self.options.tolerance;
+        let claimed = self.claim(face).map_or(tolerance, |c| c.proven_error);
+        if claimed.is_finite() { claimed.clamp(0.01 * tolerance, tolerance) } else { tolerance }
+    }
+
     fn claim(&self, face: usize) -> Option<Claim> {
         self.claims.and_then(|claims| claims.get(face)).copied()
     }
