@@ -1,19 +1,9 @@
 //! Cuts: where a face's triangles are glued to each other along a line that is no edge of the model.
 //!
-//! A seam's two sides lie whole periods apart in the chart: nothing is between them. At a pole, triangles whose corners are
-//! not three vertices were left out; the sliver of surface between the two sides of such a cut has a single mesh edge over it
-//! and needs a bound of its own:
-//!
-//! ```text
-//!   p_k ══ pole ══ p_k+1        one vertex
-//!     ╲             ╱
-//!      ╲  sliver   ╱            S over the triangle against the edge P–X
-//!       ╲         ╱
-//!        ╲___x___╱
-//! ```
-//!
-//! The bound is that of the vector error e = S − L against the affine map L of the sliver onto the edge (see
-//! `chordal_nurbs::facet_bound` for the formula along one direction).
+//! A seam's two sides lie whole periods apart in the chart: nothing is between them. Where triangles whose corners are not
+//! three vertices were left out, a sliver of surface between the two sides has a single mesh edge over it. At a pole
+//! the sectors of [`crate::fan`] cover it; elsewhere it needs a bound of its own, that of the vector error e = S − L against the
+//! affine map L of the sliver onto the edge (see `chordal_nurbs::facet_bound` for the formula along one direction).
 
 use crate::face::Chart;
 use crate::halves::Half;
@@ -24,7 +14,7 @@ use chordal_nurbs::{DVec2, DVec3, Piece, Surface, SurfaceBounds, UvBox};
 pub(crate) enum Cut {
     /// Nothing: one side is the other moved by whole periods.
     Seam,
-    /// A sliver at a pole, whose distance from its edge is at most this.
+    /// A sliver, whose distance from its edge is at most this; zero where something else covers it.
     Sliver(f64),
 }
 
@@ -33,7 +23,7 @@ const SAME_UV: f64 = 1e-9;
 
 pub(crate) fn judge(
     chart: &Chart<'_>,
-    bounds: Option<&SurfaceBounds<'_>>,
+    bounds: &SurfaceBounds<'_>,
     sides: &[Half; 2],
     scratch: &mut Vec<Piece>,
 ) -> Cut {
@@ -51,10 +41,12 @@ pub(crate) fn judge(
         return Cut::Seam;
     }
     // The central projection of a sphere or a cone needs no parameters at a pole.
-    if matches!(chart.surface, Surface::Sphere { .. } | Surface::Cone { .. }) && chart.touches_pole(first) {
+    let projected = matches!(chart.surface, Surface::Sphere { .. } | Surface::Cone { .. });
+    if projected && sides.iter().any(|h| chart.touches_pole(h))
+        || sides.iter().all(|h| chart.is_fan(h.triangle))
+    {
         return Cut::Sliver(0.0);
     }
-    let Some(bounds) = bounds else { return Cut::Sliver(f64::NAN) };
     let turns = if close(off_b) { at_b } else { at_a };
     let (a2, b2) = (a2 - turns, b2 - turns);
     let (p, q) = (chart.point(a), chart.point(b));

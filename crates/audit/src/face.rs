@@ -1,22 +1,20 @@
 //! One face: its corners lie on the surface, its triangles cover it once, and each is within its bound.
 
 use crate::boundary::{Boundary, boundary};
-use crate::cuts::{self, Cut};
 use crate::edges::ROUNDING;
 use crate::halves::{Half, Halves};
 use crate::part::Context;
+use crate::prove;
 use crate::report::{FaceAudit, Problem, ProblemKind, Subject};
 use crate::shell::half_key;
 use chordal_brep::{Face, FaceGeometry, Loop};
 use chordal_mesh::{FaceMesh, Origin};
-use chordal_nurbs::{
-    DVec2, DVec3, Facet, Pole, Surface, SurfaceBounds, SurfaceInverter, UvBox, Wrap, facet_bound,
-};
+use chordal_nurbs::{DVec2, DVec3, Pole, Surface, SurfaceInverter, UvBox, Wrap};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// Triangles or corners handled by one task.
-const CHUNK: usize = 4096;
+pub(crate) const CHUNK: usize = 4096;
 
 /// Normals are recomputed to this.
 const NORMAL: f64 = 1e-6;
@@ -27,6 +25,10 @@ pub(crate) struct FaceFindings {
     pub audit: FaceAudit,
     /// The recomputed error before the rounding of the written coordinates; NaN where nothing is proven.
     pub error: f64,
+    /// The same by the mesher's own account, which sees triangles and chords alone.
+    pub claimable: f64,
+    /// Largest distance of a corner from the surface.
+    pub surface_gap: f64,
     pub rounding: f64,
     pub degenerate: usize,
     pub duplicates: usize,
@@ -49,11 +51,11 @@ pub(crate) struct Chart<'a> {
     periods: [Option<f64>; 2],
     poles: Vec<Pole>,
     /// The surface at every corner.
-    xyz: Vec<DVec3>,
+    pub xyz: Vec<DVec3>,
     /// Rounding of points on this surface.
-    rounding: f64,
+    pub rounding: f64,
     /// Triangles run clockwise in the chart.
-    turned: bool,
+    pub turned: bool,
 }
 
 fn turn(mesh: &FaceMesh, t: &[u32; 3]) -> f64 {
@@ -105,15 +107,35 @@ impl<'a> Chart<'a> {
         DVec2::new(turn(d.x, self.periods[0]), turn(d.y, self.periods[1]))
     }
 
+    /// The axis of the pole that a corner lies on.
+    pub fn pole_axis(&self, corner: u32) -> Option<usize> {
+        let uv = self.mesh.corners[corner as usize].uv;
+        let at = |pole: &&Pole| {
+            let (t, axis) = (uv[pole.axis], pole.axis);
+            let off = t - pole.value;
+            let off = off - self.periods[axis].map_or(0.0, |p| p * (off / p).round());
+            off.abs() <= 1e-9 * (t.abs() + pole.value.abs() + self.uv_box.size()[axis])
+        };
+        self.poles.iter().find(at).map(|pole| pole.axis)
+    }
+
     /// One end of the half-edge lies on a pole.
     pub fn touches_pole(&self, half: &Half) -> bool {
-        [half.a, half.b].iter().any(|&c| {
-            let uv = self.mesh.corners[c as usize].uv;
-            self.poles.iter().any(|pole| {
-                (uv[pole.axis] - pole.value).abs()
-                    <= 1e-6 * (1.0 + pole.value.abs().max(self.uv_box.size()[pole.axis]))
-            })
-        })
+        self.pole_axis(half.a).or(self.pole_axis(half.b)).is_some()
+    }
+
+    /// The corner of a triangle that is its only one on a pole.
+    pub fn fan_corner(&self, triangle: &[u32; 3]) -> Option<usize> {
+        if self.poles.is_empty() || matches!(self.surface, Surface::Sphere { .. } | Surface::Cone { .. }) {
+            return None;
+        }
+        let at = triangle.map(|c| self.pole_axis(c).is_some());
+        let only = at.iter().filter(|&&a| a).count() == 1;
+        at.iter().position(|&a| a && only)
+    }
+
+    pub fn is_fan(&self, triangle: u32) -> bool {
+        self.fan_corner(&self.mesh.triangles[triangle as usize]).is_some()
     }
 }
 
@@ -161,25 +183,21 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     if found.duplicates > 0 {
         log.add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
     }
-    if context.options.proven {
-        prove(context, &chart, &bounds_of, &mut found, &mut log);
-    } else {
-        found.error = f64::NAN;
-    }
+    prove::prove(context, &chart, &bounds_of, &mut found, &mut log);
     found.audit.proven_error = found.error + context.options.coordinate_rounding;
     found.problems = log.problems;
     found
 }
 
 /// Collects the problems of one face.
-struct Log<'a> {
-    index: usize,
+pub(crate) struct Log<'a> {
+    pub index: usize,
     face: &'a Face,
     problems: Vec<Problem>,
 }
 
 impl Log<'_> {
-    fn add(&mut self, kind: ProblemKind, what: String) {
+    pub fn add(&mut self, kind: ProblemKind, what: String) {
         let sentence = format!("face {} {what}", self.face.source);
         self.problems.push(Problem { subject: Subject::Face(self.index as u32), kind, sentence });
     }
@@ -284,6 +302,7 @@ fn normal_agrees(surface: &Surface, uv: DVec2, cross: DVec3, stated: DVec3, sign
 struct TriangleFindings {
     degenerate: usize,
     folded: usize,
+    against: usize,
     volume: f64,
     least_cosine: f64,
 }
@@ -304,7 +323,8 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
             let ideal = t.map(|c| chart.xyz[c as usize]);
             let normal = (ideal[1] - ideal[0]).cross(ideal[2] - ideal[0]);
             let against = c.iter().all(|c| c.normal.dot(normal) < 0.0);
-            sum.folded += usize::from(if chart.turned { turn >= 0.0 } else { turn <= 0.0 } || against);
+            sum.folded += usize::from(if chart.turned { turn >= 0.0 } else { turn <= 0.0 });
+            sum.against += usize::from(against);
             for i in 0..3 {
                 let (n, m) = (c[i].normal, c[(i + 1) % 3].normal);
                 if n != DVec3::ZERO && m != DVec3::ZERO {
@@ -315,12 +335,13 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
         sum
     };
     let sums: Vec<TriangleFindings> = chart.mesh.triangles.par_chunks(CHUNK).map(check).collect();
-    let mut folded = 0;
+    let (mut folded, mut against) = (0, 0);
     let mut least = 1.0f64;
     for sum in sums {
         found.degenerate += sum.degenerate;
         found.volume += sum.volume / 6.0;
         folded += sum.folded;
+        against += sum.against;
         least = least.min(sum.least_cosine);
     }
     found.audit.max_angle = least.clamp(-1.0, 1.0).acos();
@@ -328,7 +349,9 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
         log.add(ProblemKind::DegenerateTriangle, format!("has {} triangles without area", found.degenerate));
     }
     if folded > 0 {
-        log.add(ProblemKind::FoldedTriangle, format!("has {folded} triangles turned over"));
+        log.add(ProblemKind::FoldedTriangle, format!("has {folded} triangles turned over in its parameters"));
+    } else if against > 0 {
+        log.add(ProblemKind::FoldedTriangle, format!("has {against} triangles turned against their normals"));
     }
     if let Some(limit) =
         context.options.angle.filter(|&l| found.audit.max_angle > l * (1.0 + NORMAL) + NORMAL)
@@ -396,65 +419,4 @@ fn gather_shared(context: &Context<'_>, mesh: &FaceMesh, halves: &Halves, found:
         inner.sort_unstable();
         found.duplicates = inner.windows(2).filter(|w| w[0] == w[1]).count();
     }
-}
-
-/// Recomputes the bound of every triangle, of every chord, and of what lies between the two sides of cuts.
-fn prove(
-    context: &Context<'_>,
-    chart: &Chart<'_>,
-    at: &Boundary,
-    found: &mut FaceFindings,
-    log: &mut Log<'_>,
-) {
-    let bounds = SurfaceBounds::new(chart.surface, chart.uv_box);
-    if !bounds.is_bounded() {
-        found.error = f64::NAN;
-        return;
-    }
-    let chords = at.chords.iter().map(|c| c.1).fold(0.0, f64::max);
-    let mut scratch = Vec::new();
-    let mut slivers = 0.0f64;
-    for sides in &at.cuts {
-        if let Cut::Sliver(error) = cuts::judge(chart, Some(&bounds), sides, &mut scratch) {
-            slivers = slivers.max(error);
-        }
-    }
-    let mut sags = vec![[None; 3]; chart.mesh.triangles.len()];
-    for (half, sag) in &at.chords {
-        sags[half.triangle as usize][half.side as usize] = Some(*sag);
-    }
-    let facets = facets_error(chart, &bounds, &sags, context.enough(log.index));
-    found.error = facets.max(chords).max(slivers);
-    let total = found.error + context.options.coordinate_rounding;
-    let tolerance = context.options.tolerance;
-    if total > tolerance * (1.0 + 1e-9) + chart.rounding {
-        let what = format!(
-            "is off by up to {total:.6e}, over the tolerance of {tolerance:.6e} (facets {facets:.3e}, chords {chords:.3e}, slivers at poles {slivers:.3e})"
-        );
-        log.add(ProblemKind::OverTolerance, what);
-    }
-}
-
-fn facets_error(
-    chart: &Chart<'_>,
-    bounds: &SurfaceBounds<'_>,
-    sags: &[[Option<f64>; 3]],
-    enough: f64,
-) -> f64 {
-    if matches!(chart.surface, Surface::Plane { .. }) {
-        return 0.0;
-    }
-    let bound = |(triangles, sags): (&[[u32; 3]], &[[Option<f64>; 3]])| {
-        let mut scratch = Vec::new();
-        let mut worst = 0.0f64;
-        for (t, &s) in triangles.iter().zip(sags) {
-            let (t, sag) = if chart.turned { ([t[0], t[2], t[1]], [s[0], s[2], s[1]]) } else { (*t, s) };
-            let uv = t.map(|c| chart.mesh.corners[c as usize].uv);
-            let facet = Facet { uv, xyz: t.map(|c| chart.xyz[c as usize]), sag };
-            worst = worst.max(facet_bound(bounds, &facet, enough, &mut scratch).error);
-        }
-        worst
-    };
-    let chunks = chart.mesh.triangles.par_chunks(CHUNK).zip(sags.par_chunks(CHUNK));
-    chunks.map(bound).reduce(|| 0.0, f64::max)
 }

@@ -7,8 +7,10 @@ mod boundary;
 mod cuts;
 mod edges;
 mod face;
+mod fan;
 mod halves;
 mod part;
+mod prove;
 mod report;
 mod shell;
 

@@ -27,11 +27,13 @@ impl Context<'_> {
         CHARGED * self.options.tolerance + self.options.coordinate_rounding
     }
 
-    /// The error that a facet of this face need not be proven to stay below.
-    pub fn enough(&self, face: usize) -> f64 {
+    /// Bounds of a facet that are as good as any: the tolerance, and what is claimed of the face.
+    pub fn enough(&self, face: usize) -> (f64, f64) {
         let tolerance = self.options.tolerance;
         let claimed = self.claim(face).map_or(tolerance, |c| c.proven_error);
-        if claimed.is_finite() { claimed.clamp(0.01 * tolerance, tolerance) } else { tolerance }
+        let claimed =
+            if claimed.is_finite() { claimed.clamp(0.01 * tolerance, tolerance) } else { tolerance };
+        (tolerance, claimed)
     }
 
     fn claim(&self, face: usize) -> Option<Claim> {
@@ -168,8 +170,8 @@ fn check_claim(context: &Context<'_>, index: usize, face: &FaceFindings, problem
             problems.push(Problem { subject: Subject::Face(index as u32), kind, sentence });
         }
     };
-    add(ProblemKind::UnderstatedError, "proven error", claim.proven_error, face.error);
-    add(ProblemKind::UnderstatedGap, "gap", claim.gap, face.audit.gap);
+    add(ProblemKind::UnderstatedError, "proven error", claim.proven_error, face.claimable);
+    add(ProblemKind::UnderstatedGap, "gap", claim.gap, face.surface_gap);
     if claim.proven_error.is_finite() && face.error.is_nan() && context.options.proven {
         let source = context.part.faces[index].source;
         let sentence = format!("face {source}: an error is claimed to be proven and nothing can be");

@@ -173,6 +173,11 @@ impl<'a> SurfaceBounds<'a> {
         self.surface.point(self.wrap.apply(p_uv))
     }
 
+    /// The unit normal of the surface, at any turn of a closed one; `None` where it has none.
+    pub fn normal(&self, p_uv: DVec2) -> Option<DVec3> {
+        self.surface.normal(self.wrap.apply(p_uv))
+    }
+
     /// False where nothing can be proven: weights that are not positive, offsets of free surfaces.
     pub fn is_bounded(&self) -> bool {
         !matches!(self.prepared, Prepared::Unknown)

@@ -1,0 +1,129 @@
+//! The bounds of one face, recomputed: its triangles, its chords, and what lies between the two sides of cuts.
+
+use crate::boundary::Boundary;
+use crate::cuts::{self, Cut};
+use crate::face::{CHUNK, Chart, FaceFindings, Log};
+use crate::fan::{Fan, Side, fan_bound};
+use crate::part::Context;
+use crate::report::ProblemKind;
+use chordal_nurbs::{Facet, Piece, Surface, SurfaceBounds, facet_bound};
+use rayon::prelude::*;
+
+pub(crate) fn prove(
+    context: &Context<'_>,
+    chart: &Chart<'_>,
+    at: &Boundary,
+    found: &mut FaceFindings,
+    log: &mut Log<'_>,
+) {
+    found.error = f64::NAN;
+    found.claimable = f64::NAN;
+    let bounds = SurfaceBounds::new(chart.surface, chart.uv_box);
+    if !context.options.proven || !bounds.is_bounded() {
+        return;
+    }
+    let mut scratch = Vec::new();
+    let mut sides = vec![[Side::Inner; 3]; chart.mesh.triangles.len()];
+    let mut chords = 0.0f64;
+    for (half, sag) in &at.chords {
+        sides[half.triangle as usize][half.side as usize] = Side::Chord(*sag);
+        chords = chords.max(*sag);
+    }
+    let mut slivers = 0.0f64;
+    for cut in &at.cuts {
+        match cuts::judge(chart, &bounds, cut, &mut scratch) {
+            Cut::Seam => {
+                cut.iter().for_each(|h| sides[h.triangle as usize][h.side as usize] = Side::Seam);
+            }
+            Cut::Sliver(error) => slivers = slivers.max(error),
+        }
+    }
+    let facets = facets_error(context, chart, &bounds, &sides, log.index);
+    found.claimable = facets.claimable.max(chords);
+    found.error = facets.error.max(chords).max(slivers);
+    let total = found.error + context.options.coordinate_rounding;
+    let tolerance = context.options.tolerance;
+    if total > tolerance * (1.0 + 1e-9) + chart.rounding {
+        let what = format!(
+            "is off by up to {total:.6e}, over the tolerance of {tolerance:.6e} \
+             (triangles {:.3e}, at poles {:.3e}, chords {chords:.3e}, slivers {slivers:.3e})",
+            facets.plain, facets.error
+        );
+        log.add(ProblemKind::OverTolerance, what);
+    }
+}
+
+/// The largest bounds of a face's triangles.
+#[derive(Clone, Copy, Debug, Default)]
+struct FacetsError {
+    /// Of all triangles, those at poles over their sectors.
+    error: f64,
+    /// Of all triangles as the mesher sees them.
+    claimable: f64,
+    /// Of triangles that touch no pole.
+    plain: f64,
+}
+
+fn facets_error(
+    context: &Context<'_>,
+    chart: &Chart<'_>,
+    bounds: &SurfaceBounds<'_>,
+    sides: &[[Side; 3]],
+    face: usize,
+) -> FacetsError {
+    if matches!(chart.surface, Surface::Plane { .. }) {
+        return FacetsError::default();
+    }
+    let (enough, claimed) = context.enough(face);
+    let judge = |(triangles, sides): (&[[u32; 3]], &[[Side; 3]])| {
+        let mut scratch = Vec::new();
+        let mut worst = FacetsError::default();
+        for (t, &s) in triangles.iter().zip(sides) {
+            let (t, s) = if chart.turned { ([t[0], t[2], t[1]], [s[0], s[2], s[1]]) } else { (*t, s) };
+            let uv = t.map(|c| chart.mesh.corners[c as usize].uv);
+            let xyz = t.map(|c| chart.xyz[c as usize]);
+            let facet = Facet { uv, xyz, sag: s.map(Side::sag) };
+            let mut plain = facet_bound(bounds, &facet, enough, &mut scratch).error;
+            if plain > claimed {
+                // How far a bound is pursued depends on what would be enough.
+                plain = plain.min(facet_bound(bounds, &facet, claimed, &mut scratch).error);
+            }
+            worst.claimable = worst.claimable.max(plain);
+            match chart.fan_corner(&t) {
+                None => worst.plain = worst.plain.max(plain),
+                Some(i) => {
+                    worst.error =
+                        worst.error.max(sector(chart, bounds, &t, &facet, s, i, enough, &mut scratch))
+                }
+            }
+        }
+        worst.error = worst.error.max(worst.plain);
+        worst
+    };
+    let chunks = chart.mesh.triangles.par_chunks(CHUNK).zip(sides.par_chunks(CHUNK));
+    chunks.map(judge).reduce(FacetsError::default, |a, b| FacetsError {
+        error: a.error.max(b.error),
+        claimable: a.claimable.max(b.claimable),
+        plain: a.plain.max(b.plain),
+    })
+}
+
+fn sector(
+    chart: &Chart<'_>,
+    bounds: &SurfaceBounds<'_>,
+    t: &[u32; 3],
+    facet: &Facet,
+    sides: [Side; 3],
+    pole: usize,
+    enough: f64,
+    scratch: &mut Vec<Piece>,
+) -> f64 {
+    let order = [(pole + 1) % 3, (pole + 2) % 3, pole];
+    let fan = Fan {
+        uv: order.map(|i| facet.uv[i]),
+        xyz: order.map(|i| facet.xyz[i]),
+        sides: order.map(|i| sides[i]),
+        axis: chart.pole_axis(t[pole]).expect("the corner is on a pole"),
+    };
+    fan_bound(bounds, &fan, enough, scratch)
+}
