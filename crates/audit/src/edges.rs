@@ -8,6 +8,7 @@ use chordal_brep::{Edge, Part};
 use chordal_mesh::{Origin, PartMesh};
 use chordal_nurbs::{Curve, CurveInverter, DVec3, Range};
 use rayon::prelude::*;
+use std::cmp::Ordering;
 
 /// Distances below this part of the tolerance are charged to the gap and not called misplaced.
 pub(crate) const CHARGED: f64 = 1e-3;
@@ -78,7 +79,7 @@ fn audit_edge(
         } else {
             tracer.t = edge.range.end;
         }
-        if !(tracer.t > before) {
+        if tracer.t.partial_cmp(&before) != Some(Ordering::Greater) {
             let what = format!("is not sampled in order at chord {i}");
             audit.problem.get_or_insert(problem(edge, index, ProblemKind::BrokenPolyline, what));
             audit.sag = vec![f64::INFINITY; last];

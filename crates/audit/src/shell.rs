@@ -30,17 +30,15 @@ pub(crate) fn audit_shell(
 ) -> ShellFindings {
     let shell = &context.part.shells[index];
     let of_shell = || shell.faces.iter().map(|f| &faces[f.index()]);
-    let mut found = ShellFindings::default();
-    found.audit = ShellAudit {
+    let needless = |face: usize| context.claims.is_some_and(|c| c.get(face).is_some_and(|c| c.needless));
+    let audit = ShellAudit {
         shell: index as u32,
         closed_in_file: shell.closed,
-        complete: of_shell().zip(&shell.faces).all(|(f, id)| {
-            f.audit.triangles > 0
-                || context.claims.is_some_and(|c| c.get(id.index()).is_some_and(|c| c.needless))
-        }),
+        complete: of_shell().zip(&shell.faces).all(|(f, id)| f.audit.triangles > 0 || needless(id.index())),
         volume: of_shell().map(|f| f.volume).sum(),
         ..ShellAudit::default()
     };
+    let mut found = ShellFindings { audit, ..ShellFindings::default() };
     count_edges(context, faces, index, &mut found.audit);
     found.duplicates = shared_duplicates(of_shell());
     found.audit.watertight = found.audit.open_edges == 0 && found.audit.inconsistent_edges == 0;

@@ -1,9 +1,10 @@
 //! The one place where the facade meets the audit.
 
-use crate::edge_count::EdgeCount;
 use crate::job::MeshedPart;
 use crate::resolve::Resolved;
-use chordal_brep::{FaceId, Model, Part};
+use chordal_audit::{AuditOptions, Claim, Problem, ProblemKind, Subject, audit_part};
+use chordal_brep::{Model, Part};
+use chordal_tessellate::{Bound, FaceReport, Options};
 use rayon::prelude::*;
 
 /// What the audit found out about one part; lengths in the part's own units.
@@ -32,27 +33,62 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &[MeshedPar
         .parts
         .par_iter()
         .zip(parts)
-        .zip(&resolved.uses)
+        .zip(resolved.uses.par_iter().zip(&resolved.parts))
         .map(
-            |((part, meshed), part_use)| {
-                if part_use.instances == 0 { AuditedPart::default() } else { audit(part, meshed) }
+            |((part, meshed), (part_use, options))| {
+                if part_use.instances == 0 { AuditedPart::default() } else { audit(part, meshed, options) }
             },
         )
         .collect()
 }
 
-fn audit(part: &Part, meshed: &MeshedPart) -> AuditedPart {
-    let shells = part.shells.iter().map(|s| audit_shell(s.closed, &s.faces, meshed)).collect();
-    AuditedPart { shells, ..AuditedPart::default() }
+fn audit(part: &Part, meshed: &MeshedPart, options: &Options) -> AuditedPart {
+    let claims: Vec<Claim> = meshed.report.faces.iter().map(claim).collect();
+    let asked = AuditOptions::new(options.tolerance)
+        .with_angle(options.angle)
+        .with_proven(options.bound == Bound::Proven);
+    let audit = audit_part(part, &meshed.mesh, &asked, Some(&claims));
+    let shells = part.shells.iter().zip(&audit.shells).map(|(shell, audited)| AuditedShell {
+        closed_in_file: audited.closed_in_file,
+        open_edges: audited.open_edges,
+        inconsistent_edges: audited.inconsistent_edges,
+        missing_faces: shell.faces.iter().filter(|f| is_missing(meshed, f.index())).count(),
+    });
+    AuditedPart {
+        shells: shells.collect(),
+        degenerate_triangles: audit.degenerate_triangles,
+        duplicate_triangles: audit.duplicate_triangles,
+        problems: audit
+            .problems
+            .iter()
+            .filter(|p| !is_told(p, &claims, options))
+            .map(ToString::to_string)
+            .collect(),
+    }
 }
 
-fn audit_shell(closed_in_file: bool, faces: &[FaceId], meshed: &MeshedPart) -> AuditedShell {
-    let zero_area = |f: &FaceId| meshed.report.faces.get(f.index()).is_some_and(|r| r.zero_area);
-    let has_triangles =
-        |f: &FaceId| meshed.mesh.faces.get(f.index()).is_some_and(|m| !m.triangles.is_empty());
-    let missing_faces = faces.iter().filter(|f| !has_triangles(f) && !zero_area(f)).count();
-    let faces = faces.iter().filter_map(|f| meshed.mesh.faces.get(f.index()));
-    let triangles = faces.flat_map(|f| f.triangles.iter().map(|t| t.map(|c| f.corners[c as usize].position)));
-    let EdgeCount { open, inconsistent } = EdgeCount::of(triangles);
-    AuditedShell { closed_in_file, open_edges: open, inconsistent_edges: inconsistent, missing_faces }
+fn claim(of_face: &FaceReport) -> Claim {
+    Claim {
+        proven_error: of_face.proven_error,
+        gap: of_face.gap,
+        missing: of_face.failed.is_some() || of_face.zero_area,
+        needless: of_face.zero_area,
+    }
+}
+
+fn is_missing(meshed: &MeshedPart, face: usize) -> bool {
+    let zero_area = meshed.report.faces.get(face).is_some_and(|r| r.zero_area);
+    !zero_area && meshed.mesh.faces.get(face).is_none_or(|m| m.triangles.is_empty())
+}
+
+/// The report says it already: shells that are not watertight are counted, and errors over the tolerance that the
+/// mesher owns up to.
+fn is_told(problem: &Problem, claims: &[Claim], options: &Options) -> bool {
+    let owned_up =
+        |f: u32| claims.get(f as usize).is_some_and(|c| !(c.proven_error <= options.tolerance) || c.missing);
+    match (problem.kind, problem.subject) {
+        (ProblemKind::OpenShell | ProblemKind::InconsistentEdges, _) => true,
+        (ProblemKind::OverTolerance, Subject::Face(f)) => owned_up(f),
+        _ => false,
+    }
 }

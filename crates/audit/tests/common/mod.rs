@@ -1,6 +1,6 @@
 //! Corpus models, read and meshed.
 
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used)]
 
 use chordal_audit::{AuditOptions, Claim, PartAudit, audit_part};
 use chordal_brep::{FaceGeometry, Model, Part};
@@ -57,7 +57,7 @@ pub fn diagonal(part: &Part) -> f64 {
 
 pub fn mesh(part: &Part, tolerance: f64, angle: Option<f64>) -> (PartMesh, PartReport) {
     let options =
-        Options::new(tolerance).with_angle(angle).with_face_timeout(Some(std::time::Duration::from_secs(10)));
+        Options::new(tolerance).with_angle(angle).with_face_timeout(Some(std::time::Duration::from_secs(4)));
     tessellate_part(part, &options, &Cancel::default(), &|_| {})
 }
 
