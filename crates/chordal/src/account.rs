@@ -282,7 +282,7 @@ fn undone(report: &Report, bound: Bound) -> Vec<String> {
             report.inconsistent_edges
         ));
     }
-    undone.extend(report.parts.iter().flat_map(|p| p.problems.iter().map(|text| in_part(&p.name, text))));
+    undone.extend(report.parts.iter().filter_map(audit_sentence));
     undone
 }
 
@@ -294,8 +294,13 @@ fn place(id: &str, line: u32) -> String {
     }
 }
 
-fn in_part(name: &str, problem: &str) -> String {
-    if name.is_empty() { problem.to_owned() } else { format!("part `{name}`: {problem}") }
+fn audit_sentence(part: &PartEntry) -> Option<String> {
+    let first = part.problems.first()?;
+    let name = if part.name.is_empty() { String::new() } else { format!(" of part `{}`", part.name) };
+    Some(match part.problems.len() - 1 {
+        0 => format!("the audit{name} found: {first}"),
+        more => format!("the audit{name} found: {first} (and {more} more)"),
+    })
 }
 
 impl Report {
