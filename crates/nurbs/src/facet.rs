@@ -29,7 +29,8 @@ pub struct Facet {
 pub struct FacetBound {
     /// The bound for the whole facet; infinite where nothing can be said.
     pub error: f64,
-    /// The share of the edge opposite corner i alone, which no point inside the facet can lower.
+    /// The share of the edge opposite corner i alone, which no point inside the facet can lower. Where `error` is far beyond what
+    /// is enough, only a lower bound.
     pub edges: [f64; 3],
 }
 

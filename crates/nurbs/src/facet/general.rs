@@ -145,9 +145,13 @@ pub(super) fn bound(
     let quick = quick_parts(&frame, &normal, &h, &sideways);
     let bound = combine(facet, &quick, slope);
     // Where even the least that the enclosures allow on an edge is too much, looking closer is in vain.
-    let least = (0..3).map(|i| (h[i].abs() - normal.reach_along(frame.d[i])) / 8.0).fold(0.0, f64::max);
-    if bound.error <= enough || least > enough {
+    let least: [f64; 3] = std::array::from_fn(|i| (h[i].abs() - normal.reach_along(frame.d[i])) / 8.0);
+    if bound.error <= enough {
         return bound;
+    }
+    if least.iter().any(|&e| e > enough) {
+        // Of the other edges this much is certain; their upper bounds are not worth knowing.
+        return FacetBound { edges: least, ..bound };
     }
     let mut best = bound;
     for parts in [4, 8, 16] {
