@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 """Meshes every STEP file of a folder at each tolerance, measures the meshes independently, and writes one table.
 
-    tools/measure_models.py [--models ../shared/models/step] [--only PATTERN] [--binary target/release/chordal]
+    tools/measure_models.py [--models ../shared/models/step] [--only PATTERN] [--skip PATTERN] [--binary target/release/chordal]
                             [--tolerances 0.1% 0.01%] [--angle 20deg] [--jobs 2] [--out out/models]
                             [--results docs/results/models] [--reuse] [--no-verify]
 
@@ -63,7 +63,8 @@ def main() -> int:
     settings.out.mkdir(parents=True, exist_ok=True)
     expected = expected_faces(args.models)
     models = sorted(p for p in args.models.iterdir() if p.suffix.lower() in SUFFIXES
-                    and any(fnmatch.fnmatch(p.name, pattern) for pattern in args.only))
+                    and any(fnmatch.fnmatch(p.name, pattern) for pattern in args.only)
+                    and not any(fnmatch.fnmatch(p.name, pattern) for pattern in args.skip))
     models.sort(key=lambda p: -p.stat().st_size)
     with ThreadPoolExecutor(args.jobs) as pool:
         rows = [row for found in pool.map(lambda m: measure_model(m, settings, expected), models) for row in found]
@@ -78,6 +79,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--models", type=Path, default=Path("../shared/models/step"))
     parser.add_argument("--only", nargs="+", default=["*"], help="shell patterns of file names")
+    parser.add_argument("--skip", nargs="+", default=[], help="shell patterns of file names to leave out")
     parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
     parser.add_argument("--verify", type=Path, default=Path("../shared/verify/verify.py"))
     parser.add_argument("--tolerances", nargs="+", default=["0.1%", "0.01%"])
@@ -87,7 +89,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=2, help="models at the same time")
     parser.add_argument("--threads", type=int, default=1, help="threads of the binary")
     parser.add_argument("--timeout", type=float, default=300, help="seconds for meshing one file once")
-    parser.add_argument("--verify-timeout", type=float, default=900, help="seconds for measuring one file")
+    parser.add_argument("--verify-timeout", type=float, default=1800, help="seconds for measuring one file")
     parser.add_argument("--reuse", action="store_true", help="take what lies in --out already")
     parser.add_argument("--no-verify", action="store_true", help="mesh only; the measured columns stay empty")
     return parser.parse_args()
