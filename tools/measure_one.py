@@ -121,8 +121,9 @@ def compare_faces(reference: Any, distance: np.ndarray, origins: list[str | None
                            "explained": bool(value <= bound + loose + slack)})
     broken.sort(key=lambda b: -b["measured"] / max(b["bound"], 1e-300))
     missing = [origins[f] for f in np.flatnonzero(measured > 3 * report["options"]["tolerance"])]
-    return {"compared": compared, "unmatched": unmatched, "broken": len(broken), "list": broken[:20],
-            "over_3x": missing[:20], "replaced": replaced(origins, report)}
+    explained = sum(b["explained"] for b in broken)
+    return {"compared": compared, "unmatched": unmatched, "broken": len(broken), "explained": explained,
+            "list": broken[:20], "over_3x": missing[:20], "replaced": replaced(origins, report)}
 
 
 def pcurve_gap(reference: Any, face: int) -> float:

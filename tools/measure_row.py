@@ -15,9 +15,10 @@ PROMISES = {
     "failed": "no face failed",
     "missing": "the verifier finds no face missing",
     "closed": "every closed shell has 0 open and 0 inconsistent edges",
-    "measured": "measured error at most tolerance + gap",
+    "measured": "measured error at most tolerance + gap (the larger of ours and the other kernel's edge gap)",
     "proven": "proven error at most the tolerance where the exit code is 0",
-    "per_face": "proven error + gap at least the measured error on every face",
+    "per_face": "proven error + gap at least the measured error on every face (or + the distance of the file's own "
+    "pcurves from its edges)",
 }
 
 
@@ -73,7 +74,8 @@ class Row:
         slack = ROUNDING * (self.diagonal or 0.0)
         measured = None
         if self.measured is not None:
-            measured = self.measured <= self.tolerance_mm + (self.gap or 0.0) + slack
+            loose = max(self.gap or 0.0, self.occ_edge_gap or 0.0)
+            measured = self.measured <= self.tolerance_mm + loose + slack
         proven = None
         if self.exit == 0:
             proven = self.proven_error is not None and self.proven_error <= self.tolerance_mm * (1 + 1e-12)
@@ -86,7 +88,7 @@ class Row:
             and self.shells_closed == self.shells_watertight,
             "measured": measured,
             "proven": proven,
-            "per_face": None if self.faces_over_bound is None else self.faces_over_bound == 0,
+            "per_face": None if self.faces_over_bound is None else self.faces_over_bound == self.faces_over_by_pcurve,
         }
 
     def broken(self) -> list[str]:
@@ -142,7 +144,7 @@ def add_measured(row: Row, measured: dict) -> None:
         row.faces_over_bound = per_face["broken"]
         row.faces_compared = per_face["compared"]
         explain_faces(row, per_face["replaced"])
-        row.faces_over_by_pcurve = sum(b["explained"] for b in per_face["list"])
+        row.faces_over_by_pcurve = per_face.get("explained", sum(b["explained"] for b in per_face["list"]))
         row.notes += [f"over its bound: {b['id']} (the other kernel's face {b['face']}): measured {b['measured']:.4g}, "
                       f"bound {b['bound']:.4g}; the file's pcurves are {b['pcurve_gap']:.4g} off their edges"
                       for b in per_face["list"]]

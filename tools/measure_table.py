@@ -11,6 +11,7 @@ from pathlib import Path
 from measure_row import PROMISES, Row
 
 NOTES_PER_ROW = 12
+EXPLAINED = Path(__file__).resolve().parent / "explained.tsv"
 
 
 def write_tables(rows: Sequence[Row], results: Path, described: str) -> None:
@@ -36,6 +37,12 @@ def over(value: float | None, unit: float | None) -> str:
     return "–" if value is None or not unit else f"{value / unit:.3f}"
 
 
+def over_bound(row: Row) -> str:
+    if not row.faces_over_bound:
+        return number(row.faces_over_bound, "d")
+    return f"{row.faces_over_bound} ({row.faces_over_by_pcurve})"
+
+
 COLUMNS: list[tuple[str, Callable[[Row], str]]] = [
     ("file", lambda r: r.model),
     ("exit", lambda r: "timeout" if r.exit is None else str(r.exit)),
@@ -56,6 +63,7 @@ COLUMNS: list[tuple[str, Callable[[Row], str]]] = [
     ("missing", lambda r: number(r.missing, "d")),
     ("open", lambda r: number(r.open_edges, "d")),
     ("incons.", lambda r: number(r.inconsistent_edges, "d")),
+    ("over bound", lambda r: over_bound(r)),
     ("s", lambda r: number(r.seconds, ".2f")),
 ]
 MARKS = {True: "✓", False: "**✗**", None: "·"}
@@ -75,7 +83,8 @@ LEGEND = """*proven*, *gap*, *edge gap*, *edge tol*, *s→m* and *m→s* are in 
 *gap*: how far vertices lie off their surfaces because the file is loose, ours; *edge gap* and *edge tol*: the same as the other
 kernel measures it, and the largest tolerance of an edge as it reads the file. *s→m*, *m→s*: measured by the
 independent verifier, surface to mesh and mesh to surface. *open*, *incons.*: edges of shells that the file calls closed, by
-provenance. *s*: wall seconds of the whole run. Then the promises: """ + "; ".join(
+provenance. *over bound*: faces measured over `proven_error + gap`; in brackets those where the file's pcurves are as far off
+their edges. *s*: wall seconds of the whole run. Then the promises: """ + "; ".join(
     f"*{name}*: {meaning}" for name, meaning in PROMISES.items()) + ". ✓ kept, ✗ broken, · could not be judged."
 
 
@@ -116,15 +125,25 @@ def geometric(values: Sequence[float]) -> float:
     return math.exp(sum(map(math.log, values)) / len(values)) if values else math.nan
 
 
+def explanations() -> dict[str, str]:
+    """Why a promise is broken, where somebody looked: `tools/explained.tsv`, a model and a sentence a line."""
+    if not EXPLAINED.exists():
+        return {}
+    lines = EXPLAINED.read_text(encoding="utf-8").splitlines()
+    return dict(line.split("\t", 1) for line in lines if "\t" in line)
+
+
 def one_by_one(rows: Sequence[Row]) -> list[str]:
     """Broken promises and everything that the reports leave undone."""
-    lines = []
+    lines, known = [], explanations()
     for row in rows:
         said = ([f"{row.message}"] if row.exit not in (0, 1) else []) + row.notes
         said += [f"not measured: {row.verify_error}"] if row.verify_error else []
         if not said and not row.broken():
             continue
         lines.append(f"- **{row.model}**, {row.tolerance}: broken: {', '.join(row.broken()) or 'none'}")
+        if row.broken() and row.model in known:
+            lines.append(f"  - looked at: {known[row.model]}")
         lines += [f"  - {note}" for note in said[:NOTES_PER_ROW]]
         if len(said) > NOTES_PER_ROW:
             lines.append(f"  - … and {len(said) - NOTES_PER_ROW} more")
