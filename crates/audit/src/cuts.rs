@@ -74,27 +74,11 @@ fn vector_bound(
         return f64::INFINITY;
     }
     let size = uv_box.size();
-    let d = [uv[2] - uv[1], uv[0] - uv[2], uv[1] - uv[0]];
+    let norms = pieces.iter().fold([0.0f64; 3], |m, p| std::array::from_fn(|i| m[i].max(p.norms[i])));
+    let bend = |d: DVec2| norms[0] * d.x * d.x + 2.0 * norms[1] * (d.x * d.y).abs() + norms[2] * d.y * d.y;
+    let worst = bend(uv[2] - uv[1]).max(bend(uv[0] - uv[2])).max(bend(uv[1] - uv[0]));
     let kinks = 0.25 * (kink.x * size.x + kink.y * size.y);
-    let along = |w: DVec3| {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for piece in pieces.iter() {
-            let (value, reach) = piece.along(w);
-            for i in 0..3 {
-                low[i] = low[i].min(value[i] - reach[i]);
-                high[i] = high[i].max(value[i] + reach[i]);
-            }
-        }
-        let h = d.map(|d| {
-            let m = |i: usize| 0.5 * (low[i] + high[i]);
-            (m(0) * d.x * d.x + 2.0 * m(1) * d.x * d.y + m(2) * d.y * d.y).abs()
-        });
-        let r = |i: usize| 0.5 * (high[i] - low[i]);
-        let reach = r(0) * size.x * size.x + 2.0 * r(1) * size.x * size.y + r(2) * size.y * size.y;
-        // Σ λ_i λ_j |h_ij| / 2 is at most the largest |h| times Σ λ_i λ_j / 2 ≤ 1/6.
-        h[0].max(h[1]).max(h[2]) / 6.0 + reach / 8.0
-    };
-    let by_axis = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
+    // Σ λ_i λ_j |D²S[d_ij, d_ij]| / 2 is at most the largest of them over 6.
     let corners = (0..3).map(|i| chart.point(uv[i]).distance(images[i])).fold(0.0, f64::max);
-    by_axis.length() + kinks + corners
+    worst / 6.0 + kinks + corners
 }

@@ -139,37 +139,52 @@ impl Along<'_, '_> {
             }
         }
         // Σ λ_i λ_j |h_ij| / 2 is at most the largest |h| over 6.
-        seen + self.between(UvBox::from_points(uv), &d, 1.0 / 6.0, pieces)
+        self.with_between(seen, UvBox::from_points(uv), &d, 1.0 / 6.0, pieces)
     }
 
     fn segment(&self, a: DVec2, b: DVec2, pieces: &mut Vec<Piece>) -> f64 {
         let at = |i: usize| self.at(a.lerp(b, i as f64 / self.parts as f64));
         let seen = (0..=self.parts).map(at).fold(0.0, f64::max);
-        seen + self.between(UvBox::from_points([a, b]), &[b - a], 1.0 / 8.0, pieces)
+        self.with_between(seen, UvBox::from_points([a, b]), &[b - a], 1.0 / 8.0, pieces)
     }
 
-    /// How far n·S may stray from linear between points of the lattice.
-    fn between(&self, uv_box: UvBox, d: &[DVec2], share: f64, pieces: &mut Vec<Piece>) -> f64 {
+    /// Adds how far n·(S − origin) may stray between points of the lattice: its product with the weight w is a polynomial g,
+    /// so it is at most (seen · (w + bend of w) + bend of g) / w.
+    fn with_between(
+        &self,
+        seen: f64,
+        uv_box: UvBox,
+        d: &[DVec2],
+        share: f64,
+        pieces: &mut Vec<Piece>,
+    ) -> f64 {
         pieces.clear();
         let kink = self.bounds.pieces(uv_box, pieces);
         if pieces.is_empty() {
             return f64::INFINITY;
         }
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for piece in pieces.iter() {
-            let (value, reach) = piece.along(self.n);
-            for i in 0..3 {
-                low[i] = low[i].min(value[i] - reach[i]);
-                high[i] = high[i].max(value[i] + reach[i]);
-            }
-        }
-        let m = |i: usize| 0.5 * (low[i] + high[i]);
-        let r = |i: usize| 0.5 * (high[i] - low[i]);
-        let h = |d: &DVec2| (m(0) * d.x * d.x + 2.0 * m(1) * d.x * d.y + m(2) * d.y * d.y).abs();
         let size = uv_box.size();
-        let reach = r(0) * size.x * size.x + 2.0 * r(1) * size.x * size.y + r(2) * size.y * size.y;
-        let kinks = 0.25 * (kink.x * size.x + kink.y * size.y) / self.parts as f64;
         let scale = 1.0 / (self.parts * self.parts) as f64;
-        (d.iter().map(h).fold(0.0, f64::max) * share + reach / 8.0) * scale + kinks
+        let least = pieces.iter().fold(f64::INFINITY, |m, p| m.min(p.least_weight));
+        let value = bend(pieces.iter().map(|p| p.along(self.n, self.origin)), d, share, size) * scale / least;
+        let weight = bend(pieces.iter().map(Piece::weight), d, share, size) * scale / least;
+        let kinks = 0.25 * (kink.x * size.x + kink.y * size.y) / self.parts as f64;
+        seen * (1.0 + weight) + value + kinks
     }
+}
+
+/// How far a function with these second derivatives (middle and reach, piece by piece) strays from linear.
+fn bend(forms: impl Iterator<Item = ([f64; 3], [f64; 3])>, d: &[DVec2], share: f64, size: DVec2) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (value, reach) in forms {
+        for i in 0..3 {
+            low[i] = low[i].min(value[i] - reach[i]);
+            high[i] = high[i].max(value[i] + reach[i]);
+        }
+    }
+    let m = |i: usize| 0.5 * (low[i] + high[i]);
+    let r = |i: usize| 0.5 * (high[i] - low[i]);
+    let h = |d: &DVec2| (m(0) * d.x * d.x + 2.0 * m(1) * d.x * d.y + m(2) * d.y * d.y).abs();
+    let reach = r(0) * size.x * size.x + 2.0 * r(1) * size.x * size.y + r(2) * size.y * size.y;
+    d.iter().map(h).fold(0.0, f64::max) * share + reach / 8.0
 }

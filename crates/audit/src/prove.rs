@@ -9,6 +9,9 @@ use crate::report::ProblemKind;
 use chordal_nurbs::{Facet, Piece, Surface, SurfaceBounds, facet_bound};
 use rayon::prelude::*;
 
+/// Bounds are asked to be tight for errors of this share of the tolerance.
+const AIM: f64 = 0.995;
+
 pub(crate) fn prove(
     context: &Context<'_>,
     chart: &Chart<'_>,
@@ -18,7 +21,7 @@ pub(crate) fn prove(
 ) {
     found.error = f64::NAN;
     found.claimable = f64::NAN;
-    let bounds = SurfaceBounds::new(chart.surface, chart.uv_box);
+    let bounds = SurfaceBounds::new(chart.surface, chart.uv_box, AIM * context.options.tolerance);
     if !context.options.proven || !bounds.is_bounded() {
         return;
     }
