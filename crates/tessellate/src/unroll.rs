@@ -31,6 +31,9 @@ pub(crate) struct Chart {
 /// A seam or natural side is cut into chords a little shorter than allowed.
 pub(crate) const SEAM_CHORD: f64 = 0.9;
 
+/// A chord of a seam is halved at most this often.
+const SEAM_DEPTH: usize = 12;
+
 impl Chart {
     /// Unrolls the face; seams get chords of this length in the metric.
     ///
@@ -107,7 +110,8 @@ impl Unroll<'_, '_> {
         Key::Private(self.private.len() as u32 - 1)
     }
 
-    /// Points strictly between two chart points, as many as the metric asks for.
+    /// Points strictly between two chart points, as many as the metric asks for, and more where a chord strays further from
+    /// the surface than its curvature at a few places promised.
     fn between(&self, from: DVec2, to: DVec2) -> Vec<DVec2> {
         // Free surfaces may bend many times along a seam.
         let probes = if self.context.surface.is_elementary() { 16 } else { 96 };
@@ -121,16 +125,39 @@ impl Unroll<'_, '_> {
         let total = sum[probes];
         let count = (total / self.seam_chord).ceil().clamp(1.0, 1e5) as usize;
         let mut at = 0;
-        (1..count)
-            .map(|k| {
-                let wanted = total * k as f64 / count as f64;
-                while sum[at + 1] < wanted {
-                    at += 1;
-                }
-                let step = sum[at + 1] - sum[at];
-                from + d * (at as f64 + if step > 0.0 { (wanted - sum[at]) / step } else { 0.5 })
-            })
-            .collect()
+        let mut points = vec![from];
+        for k in 1..=count {
+            let wanted = total * k as f64 / count as f64;
+            while at + 1 < probes && sum[at + 1] < wanted {
+                at += 1;
+            }
+            let step = sum[at + 1] - sum[at];
+            let inside = if step > 0.0 { ((wanted - sum[at]) / step).min(1.0) } else { 0.5 };
+            let next = if k == count { to } else { from + d * (at as f64 + inside) };
+            self.halve_until_near(points[points.len() - 1], next, SEAM_DEPTH, &mut points);
+        }
+        points.pop();
+        points.remove(0);
+        points
+    }
+
+    /// Appends points behind `from` up to `to`, halving until each chord is near the surface.
+    fn halve_until_near(&self, from: DVec2, to: DVec2, depth: usize, points: &mut Vec<DVec2>) {
+        let [a, b] = [from, to].map(|uv| self.context.surface.point(uv));
+        let chord = b - a;
+        let off = |i: i32| {
+            let x = self.context.surface.point(from.lerp(to, f64::from(i) / 8.0)) - a;
+            let along = (x.dot(chord) / chord.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            (x - chord * along).length()
+        };
+        let allowed = self.limits.tolerance * self.seam_chord * self.seam_chord;
+        if depth > 0 && (1..8).any(|i| off(i) > allowed) {
+            let middle = from.midpoint(to);
+            self.halve_until_near(from, middle, depth - 1, points);
+            self.halve_until_near(middle, to, depth - 1, points);
+        } else {
+            points.push(to);
+        }
     }
 
     /// The polygon of one or two loops that wind round the surface.
