@@ -22,7 +22,8 @@ pub enum Command {
     Mesh(MeshArgs),
     /// Say what is in a CAD file: tree, units, faces by kind, gaps, loose items, warnings.
     Info(InfoArgs),
-    /// Check a mesh file: closed, oriented, without degenerate and duplicate triangles.
+    /// Check a mesh file: closed, oriented, without degenerate and duplicate triangles; with --against, its measured
+    /// distance from a CAD file.
     Check(CheckArgs),
     /// Time reading and meshing in process.
     #[command(hide = true)]
@@ -225,6 +226,12 @@ pub struct CheckArgs {
     /// A mesh file: STL, PLY, OBJ, GLB or 3MF.
     #[arg(value_name = "MESH")]
     pub mesh: PathBuf,
+    /// A CAD file to measure the mesh against, both ways, at samples.
+    #[arg(long, value_name = "IN")]
+    pub against: Option<PathBuf>,
+    /// With --against: exit with 1 where a measured distance is larger than this length (a bare number is in mm).
+    #[arg(long, value_name = "LENGTH", value_parser = chordal::parse_length, allow_hyphen_values = true)]
+    pub tolerance: Option<f64>,
     /// The unit of the mesh's coordinates [default: what the file says, else mm].
     #[arg(long)]
     pub unit: Option<Unit>,

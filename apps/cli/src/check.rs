@@ -2,10 +2,16 @@
 
 use crate::args::CheckArgs;
 use crate::exit::{Exit, print, say};
-use chordal::CheckReport;
+use chordal::{AgainstReport, CheckReport, JobOptions, Tolerance};
+use std::fmt::Write;
+
+/// The fine mesh that stands for the model: ten times as fine as the default, in percent of the diagonal.
+const REFERENCE: Tolerance = Tolerance::Percent(0.01);
 
 pub fn run(args: &CheckArgs) -> Exit {
-    let found = match chordal::check_mesh(&args.mesh, args.unit) {
+    let options = JobOptions::default().with_tolerance(REFERENCE);
+    let against = args.against.as_deref().map(|input| (input, &options));
+    let found = match chordal::check_mesh(&args.mesh, args.unit, against) {
         Ok(found) => found,
         Err(error) => {
             say(&error.to_string());
@@ -13,14 +19,17 @@ pub fn run(args: &CheckArgs) -> Exit {
         }
     };
     print(&if args.json { found.to_json() } else { text(&found) });
-    if found.clean() { Exit::Clean } else { Exit::Undone }
+    let far =
+        |limit: f64| found.against.as_ref().is_some_and(|a| a.mesh_to_model.max(a.model_to_mesh) > limit);
+    if found.clean() && !args.tolerance.is_some_and(far) { Exit::Clean } else { Exit::Undone }
 }
 
+/// Writing to a string cannot fail, so results of `write!` are dropped.
 fn text(found: &CheckReport) -> String {
     let yes = |is: bool| if is { "yes" } else { "no" };
     let volume =
         found.volume.map_or_else(|| "none: not closed and oriented".into(), |v| format!("{v:.6} mm³"));
-    format!(
+    let mut out = format!(
         "triangles   {}\nvertices    {}\nclosed      {} ({} open edges)\noriented    {} ({} inconsistent edges)\n\
          degenerate  {}\nduplicate   {}\nvolume      {volume}\n",
         found.triangles,
@@ -31,5 +40,26 @@ fn text(found: &CheckReport) -> String {
         found.inconsistent_edges,
         found.degenerate_triangles,
         found.duplicate_triangles
-    )
+    );
+    if let Some(against) = &found.against {
+        distances(&mut out, against);
+    }
+    out
+}
+
+fn distances(out: &mut String, against: &AgainstReport) {
+    let within =
+        against.reference_error.map_or_else(String::new, |e| format!(", right to within {e:.3e} mm"));
+    let _ = writeln!(out, "\nagainst     {}, measured at samples", against.model);
+    let _ = writeln!(
+        out,
+        "mesh → model  {:.6e} mm at {} samples{within}\nmodel → mesh  {:.6e} mm at {} samples",
+        against.mesh_to_model, against.mesh_samples, against.model_to_mesh, against.model_samples
+    );
+    if against.faces_not_compared > 0 {
+        let _ = writeln!(out, "{} faces of the model were not compared", against.faces_not_compared);
+    }
+    for face in &against.worst_faces {
+        let _ = writeln!(out, "  {:.3e} mm  {} {} of {}", face.distance, face.kind, face.id, face.part);
+    }
 }

@@ -1,7 +1,8 @@
 //! What is to be said about a mesh file, whoever wrote it.
 
-use crate::JobError;
+use crate::against::{AgainstReport, measure_against};
 use crate::edge_count::EdgeCount;
+use crate::{JobError, JobOptions};
 use chordal_mesh::{TriangleSoup, import_mesh};
 use chordal_write::Unit;
 use glam::DVec3;
@@ -31,6 +32,8 @@ pub struct CheckReport {
     pub duplicate_triangles: usize,
     /// In cubic millimetres; only of a closed and oriented mesh. Negative: inside out.
     pub volume: Option<f64>,
+    /// The comparison with a CAD model, where it was asked for.
+    pub against: Option<AgainstReport>,
 }
 
 impl CheckReport {
@@ -49,11 +52,16 @@ impl CheckReport {
     }
 }
 
-/// Checks a mesh file; `unit` is that of its coordinates where it states none or states it wrongly.
+/// Checks a mesh file; `unit` is that of its coordinates where it states none or states it wrongly. `against` names a
+/// CAD file to compare it with, by a fine mesh with these options.
 ///
 /// # Errors
-/// Where the file cannot be read.
-pub fn check_mesh(path: &Path, unit: Option<Unit>) -> Result<CheckReport, JobError> {
+/// Where a file cannot be read.
+pub fn check_mesh(
+    path: &Path,
+    unit: Option<Unit>,
+    against: Option<(&Path, &JobOptions)>,
+) -> Result<CheckReport, JobError> {
     let mut soup = import_mesh(path).map_err(|e| JobError::Mesh { path: path.to_owned(), source: e })?;
     soup.unit_mm = unit.map(Unit::millimetres).or(soup.unit_mm);
     let soup = soup.into_millimetres_z_up();
@@ -71,6 +79,7 @@ pub fn check_mesh(path: &Path, unit: Option<Unit>) -> Result<CheckReport, JobErr
         degenerate_triangles: soup.triangles.iter().filter(|t| is_degenerate(&soup, **t)).count(),
         duplicate_triangles: duplicates(&soup),
         volume: (closed && oriented).then(|| volume(&soup)),
+        against: against.map(|(input, options)| measure_against(&soup, input, options)).transpose()?,
     })
 }
 

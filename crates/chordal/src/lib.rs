@@ -15,6 +15,7 @@
 //! and can be used alone: [`nurbs`], [`brep`], [`read`], [`mod@tessellate`], [`audit`], [`mesh`], [`write`](mod@write).
 
 mod account;
+mod against;
 mod analytic;
 mod auditing;
 mod check;
@@ -33,8 +34,10 @@ pub mod report;
 mod resolve;
 mod scene;
 mod tight_box;
+mod triangle_tree;
 mod whole_file;
 
+pub use against::{AgainstReport, WorstFace};
 pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
 pub use error::JobError;
 pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};

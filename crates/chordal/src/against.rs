@@ -1,0 +1,162 @@
+//! How far a mesh, whoever made it, lies from a CAD model: measured at samples, in both directions.
+//!
+//! The model is meshed finely; vertices of that mesh lie on the exact surfaces, and its triangles within its proven
+//! error of them. Model → mesh: from these vertices to the nearest triangle of the mesh. Mesh → model: from samples of
+//! the mesh to the nearest fine triangle, right to within the fine mesh's proven error.
+
+use crate::job::{MeshedPart, mesh_parts, read_model};
+use crate::names::{entity_id, face_kind};
+use crate::resolve::{Resolved, resolve};
+use crate::triangle_tree::TriangleTree;
+use crate::{JobError, JobOptions};
+use chordal_brep::Model;
+use chordal_mesh::TriangleSoup;
+use chordal_tessellate::Cancel;
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::Path;
+
+/// Samples of the mesh, about.
+const SAMPLES: f64 = 200_000.0;
+/// Faces that are listed.
+const WORST: usize = 10;
+
+/// What was measured, in millimetres.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AgainstReport {
+    pub model: String,
+    /// Always "measured": largest distances over samples, which are lower bounds.
+    pub method: String,
+    /// Largest distance of a sample of the mesh from the model, right to within `reference_error`.
+    pub mesh_to_model: f64,
+    /// Largest distance of a point of the model's exact faces from the mesh.
+    pub model_to_mesh: f64,
+    /// Proven error of the fine mesh that stands for the model; `null` where one of its faces has no proof.
+    pub reference_error: Option<f64>,
+    pub mesh_samples: usize,
+    pub model_samples: usize,
+    /// Faces of the model that could not be meshed finely, and so were not compared.
+    pub faces_not_compared: usize,
+    /// The faces that are farthest from the mesh, the farthest first.
+    pub worst_faces: Vec<WorstFace>,
+}
+
+/// One placed face.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct WorstFace {
+    pub id: String,
+    pub kind: String,
+    pub part: String,
+    pub distance: f64,
+}
+
+/// Measures the distance between `soup`, in millimetres and Z up, and the model in the file `input`; `options` are
+/// those of the fine mesh.
+///
+/// # Errors
+/// Where the model cannot be read or meshed.
+pub fn measure_against(
+    soup: &TriangleSoup,
+    input: &Path,
+    options: &JobOptions,
+) -> Result<AgainstReport, JobError> {
+    let cancel = Cancel::default();
+    let model = read_model(input)?;
+    let resolved = resolve(&model, options, None, input, &cancel)?;
+    let parts = mesh_parts(&model, &resolved, &cancel, &|_| ());
+    let mesh =
+        TriangleTree::new(soup.triangles.iter().map(|t| t.map(|i| soup.positions[i as usize])).collect());
+    let fine = TriangleTree::new(placed_triangles(&resolved, &parts));
+
+    let samples = mesh_samples(soup);
+    let farthest = |tree: &TriangleTree, p: DVec3| tree.distance(p, f64::INFINITY);
+    let mesh_to_model = samples.par_iter().map(|&p| farthest(&fine, p)).reduce(|| 0.0, f64::max);
+    let mut faces = face_distances(&model, &resolved, &parts, &mesh);
+    let model_samples = faces.iter().map(|f| f.1).sum();
+    faces.sort_by(|a, b| b.0.distance.total_cmp(&a.0.distance));
+    let model_to_mesh = faces.first().map_or(0.0, |f| f.0.distance);
+    Ok(AgainstReport {
+        model: input.display().to_string(),
+        method: "measured".into(),
+        mesh_to_model,
+        model_to_mesh,
+        reference_error: reference_error(&resolved, &parts),
+        mesh_samples: samples.len(),
+        model_samples,
+        faces_not_compared: model.placed_faces() - faces.len(),
+        worst_faces: faces.into_iter().map(|f| f.0).take(WORST).collect(),
+    })
+}
+
+fn placed_triangles(resolved: &Resolved, parts: &[MeshedPart]) -> Vec<[DVec3; 3]> {
+    let mut triangles = Vec::new();
+    for (part, part_use) in parts.iter().zip(&resolved.uses) {
+        for world in &part_use.worlds {
+            let at = |i: u32| world.transform_point3(part.mesh.positions[i as usize]);
+            for face in &part.mesh.faces {
+                triangles
+                    .extend(face.triangles.iter().map(|t| t.map(|c| at(face.corners[c as usize].position))));
+            }
+        }
+    }
+    triangles
+}
+
+/// Vertices, and points inside triangles as densely as the number of samples allows.
+fn mesh_samples(soup: &TriangleSoup) -> Vec<DVec3> {
+    let corners = |t: &[u32; 3]| t.map(|i| soup.positions[i as usize]);
+    let area = |[a, b, c]: [DVec3; 3]| 0.5 * (b - a).cross(c - a).length();
+    let total: f64 = soup.triangles.iter().map(|t| area(corners(t))).sum();
+    let mut samples = soup.positions.clone();
+    for triangle in &soup.triangles {
+        let [a, b, c] = corners(triangle);
+        // A lattice of n + 1 points a side has (n + 1)(n + 2) / 2 points.
+        let wanted = SAMPLES * area([a, b, c]) / total.max(f64::MIN_POSITIVE);
+        let n = ((2.0 * wanted).sqrt().ceil() as usize).clamp(2, 1000);
+        for i in 0..=n {
+            for j in 0..=n - i {
+                samples.push(a + (b - a) * (i as f64 / n as f64) + (c - a) * (j as f64 / n as f64));
+            }
+        }
+    }
+    samples
+}
+
+/// Every placed face with triangles: its distance from the mesh, and the number of its samples.
+fn face_distances(
+    model: &Model,
+    resolved: &Resolved,
+    parts: &[MeshedPart],
+    mesh: &TriangleTree,
+) -> Vec<(WorstFace, usize)> {
+    let mut found = Vec::new();
+    for ((part, meshed), part_use) in model.parts.iter().zip(parts).zip(&resolved.uses) {
+        for world in &part_use.worlds {
+            let of_part =
+                part.faces.par_iter().zip(&meshed.mesh.faces).filter(|(_, m)| !m.triangles.is_empty());
+            found.par_extend(of_part.map(|(face, face_mesh)| {
+                let points = face_mesh.corners.iter().map(|c| meshed.mesh.positions[c.position as usize]);
+                let distance = points
+                    .map(|p| mesh.distance(world.transform_point3(p), f64::INFINITY))
+                    .fold(0.0, f64::max);
+                let worst = WorstFace {
+                    id: entity_id(face.source),
+                    kind: face_kind(face).into(),
+                    part: part.name.clone(),
+                    distance,
+                };
+                (worst, face_mesh.corners.len())
+            }));
+        }
+    }
+    found
+}
+
+fn reference_error(resolved: &Resolved, parts: &[MeshedPart]) -> Option<f64> {
+    let faces = parts.iter().zip(&resolved.uses).flat_map(|(part, part_use)| {
+        let meshed = part.report.faces.iter().filter(|f| f.triangles > 0);
+        meshed.map(|f| f.proven_error * part_use.scale)
+    });
+    faces.map(|e| e.is_finite().then_some(e)).try_fold(0.0, |largest, e| Some(f64::max(largest, e?)))
+}
