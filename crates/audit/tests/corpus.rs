@@ -13,17 +13,7 @@ const KNOWN: &[(&str, &[ProblemKind], &str)] = {
         DegenerateTriangle, FoldedTriangle, InconsistentEdges, NonManifoldEdges, OverTolerance,
         UnderstatedError,
     };
-    const RIM: &str = "a triangle of three points of one parameter line stands across the surface";
     &[
-        ("cone_apex", &[FoldedTriangle], RIM),
-        ("torus_apple", &[FoldedTriangle], RIM),
-        ("torus_hole", &[FoldedTriangle], RIM),
-        (
-            "stacked_points",
-            &[FoldedTriangle],
-            "control points are stacked: the surface folds at the seam of its net",
-        ),
-        ("degree_mixed", &[FoldedTriangle, DegenerateTriangle], RIM),
         (
             "fillet_torus",
             &[FoldedTriangle, DegenerateTriangle, InconsistentEdges],
@@ -39,7 +29,6 @@ const KNOWN: &[(&str, &[ProblemKind], &str)] = {
             &[OverTolerance, UnderstatedError],
             "weights from 1e-3 to 1e3: the bounds are too loose to end",
         ),
-        ("degree_100", &[OverTolerance, UnderstatedError], "out of time in an unoptimised build"),
     ]
 };
 
