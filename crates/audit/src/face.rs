@@ -16,10 +16,6 @@ use std::borrow::Cow;
 /// Triangles or corners handled by one task.
 pub(crate) const CHUNK: usize = 4096;
 
-/// Triangles no higher than this many tolerances may face any way: three neighbours on a curved parameter line, whose
-/// chords keep the tolerance, span as much.
-const THIN: f64 = 4.0;
-
 /// Normals are recomputed to this.
 const NORMAL: f64 = 1e-6;
 
@@ -326,9 +322,7 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
             let turn = turn(chart.mesh, t);
             let ideal = t.map(|c| chart.xyz[c as usize]);
             let normal = (ideal[1] - ideal[0]).cross(ideal[2] - ideal[0]);
-            let longest = (0..3).map(|i| ideal[i].distance(ideal[(i + 1) % 3])).fold(0.0, f64::max);
-            let thin = normal.length() <= THIN * context.options.tolerance * longest;
-            let against = !thin && c.iter().all(|c| c.normal.dot(normal) < 0.0);
+            let against = c.iter().all(|c| c.normal.dot(normal) < 0.0);
             sum.folded += usize::from(if chart.turned { turn >= 0.0 } else { turn <= 0.0 });
             sum.against += usize::from(against);
             for i in 0..3 {
@@ -354,10 +348,9 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
     if found.degenerate > 0 {
         log.add(ProblemKind::DegenerateTriangle, format!("has {} triangles without area", found.degenerate));
     }
+    found.audit.leaning = against;
     if folded > 0 {
         log.add(ProblemKind::FoldedTriangle, format!("has {folded} triangles turned over in its parameters"));
-    } else if against > 0 {
-        log.add(ProblemKind::FoldedTriangle, format!("has {against} triangles turned against their normals"));
     }
     if let Some(limit) =
         context.options.angle.filter(|&l| found.audit.max_angle > l * (1.0 + NORMAL) + NORMAL)

@@ -77,7 +77,7 @@ pub enum ProblemKind {
     InsideOut,
     DegenerateTriangle,
     DuplicateTriangle,
-    /// A triangle is turned over in the parameters of its face, or against its normals.
+    /// A triangle is turned over in the parameters of its face.
     FoldedTriangle,
     /// A vertex is not where its origin says.
     MisplacedVertex,
@@ -138,6 +138,9 @@ pub struct FaceAudit {
     pub gap: f64,
     /// Largest angle between the exact normals at the two ends of a mesh edge, in radians.
     pub max_angle: f64,
+    /// Triangles that face away from the normals of all their corners: three points of one curved parameter line may do so
+    /// without leaving the tolerance.
+    pub leaning: usize,
 }
 
 /// One part.
