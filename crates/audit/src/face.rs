@@ -250,6 +250,7 @@ fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceF
         farthest = farthest.max(sum.farthest);
         wrong += sum.wrong_normals;
     }
+    found.surface_gap = found.audit.gap;
     found.audit.gap =
         found.audit.gap.max(loop_edges(log.face).map(|e| context.edges[e].gap).fold(0.0, f64::max));
     if found.misplaced > 0 {
