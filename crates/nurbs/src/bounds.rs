@@ -406,9 +406,10 @@ impl ProfileTable {
 impl CellTable {
     /// Slack that a cell may add to a facet as large as itself, as a share of the resolution.
     const SLACK: f64 = 0.1;
-    /// Patches are cut into no more parts than this in each direction, and surfaces into no more cells.
-    const MAX_PARTS: f64 = 8.0;
-    const MAX_CELLS: f64 = 20_000.0;
+    /// Patches are cut into no more parts than this in each direction.
+    const MAX_PARTS: f64 = 32.0;
+    /// Control points of all cells together.
+    const MAX_POINTS: f64 = 1_000_000.0;
 
     /// `None` where a weight is not positive: nothing can be bounded then.
     fn new(surface: &NurbsSurface, domain: UvBox, resolution: f64) -> Option<Self> {
@@ -426,7 +427,8 @@ impl CellTable {
         distinct(&mut spans_v);
         // The slack of a cell shrinks with the fourth power of its size.
         let slack = patches.iter().map(|(span, patch)| net::slack(patch, *span)).fold(0.0, f64::max);
-        let most = (Self::MAX_CELLS / patches.len() as f64).sqrt().clamp(1.0, Self::MAX_PARTS);
+        let points: usize = patches.iter().map(|(_, patch)| patch.points.len()).sum();
+        let most = (Self::MAX_POINTS / points as f64).sqrt().clamp(1.0, Self::MAX_PARTS);
         let parts = (slack / (Self::SLACK * resolution)).powf(0.25).ceil().clamp(1.0, most) as usize;
         let columns = (spans_v.len() - 1) * parts;
         let mut cells = vec![Cell::default(); (spans_u.len() - 1) * parts * columns];

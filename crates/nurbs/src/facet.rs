@@ -55,7 +55,8 @@ pub fn facet_bound(
             elementary::cone(facet, radii, half_angle.cos())
         }
         Surface::Sphere { frame, radius } => elementary::sphere(facet, frame.origin, *radius),
-        Surface::Torus { frame, major, minor } if major > minor => {
+        // Where the tube is wider than its circle, only the part that faces away from the axis has the simple form.
+        Surface::Torus { frame, major, minor } if facet.uv.iter().all(|p| major + minor * p.y.cos() > 0.0) => {
             let own = elementary::torus(facet, frame, *major, *minor, enough);
             // Facets long against the tube's radius are beyond it: derivatives must do.
             if own.error.is_finite() { own } else { general::bound(bounds, facet, enough, scratch) }

@@ -79,6 +79,9 @@ fn largest_quadratic(h: [f64; 3]) -> f64 {
     if inside && sum != 0.0 { on_edges.max((a * b * c / (2.0 * sum)).abs()) } else { on_edges }
 }
 
+/// The finest lattice on which the error is evaluated.
+const MAX_PARTS: usize = 16;
+
 /// What all stages of one bound share.
 struct Frame3 {
     n: DVec3,
@@ -154,18 +157,25 @@ pub(super) fn bound(
         return FacetBound { edges: least, ..bound };
     }
     let mut best = bound;
-    for parts in [4, 8, 16] {
+    let mut parts = 4;
+    loop {
         let weights = weight_bend(&Form::weight(pieces), &frame, parts) / least_weight;
         let (mut closer, seen) = sampled_parts(bounds, facet, &frame, &normal, &sideways, parts);
         closer.grow(1.0 + weights);
         let bound = combine(facet, &closer, slope);
         best.error = best.error.min(bound.error);
         best.edges = std::array::from_fn(|i| best.edges[i].min(bound.edges[i]));
-        if best.error <= enough || seen > enough {
-            break;
+        // What lies between the samples shrinks with the square of their number: stop where even the finest lattice is too coarse.
+        let (margin, room) = (bound.error - seen, enough - seen);
+        if best.error <= enough || room <= 0.0 || parts >= MAX_PARTS {
+            return best;
         }
+        let needed = parts as f64 * (margin / room).sqrt();
+        if needed > 1.5 * MAX_PARTS as f64 {
+            return best;
+        }
+        parts = if needed <= 8.0 && parts < 8 { 8 } else { MAX_PARTS };
     }
-    best
 }
 
 impl Parts {
