@@ -9,17 +9,18 @@ use glam::{DVec2, DVec3, DVec4};
 
 mod net;
 
-/// All homogeneous vectors within `radius` of `center`.
+/// Homogeneous vectors near `center`: the spatial part within `radius`, the weight within `weight_radius`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ball4 {
     pub center: DVec4,
     pub radius: f64,
+    pub weight_radius: f64,
 }
 
 impl Ball4 {
     /// All vectors no longer than `radius`, without a weight.
     fn around_zero(radius: f64) -> Self {
-        Self { center: DVec4::ZERO, radius }
+        Self { center: DVec4::ZERO, radius, weight_radius: 0.0 }
     }
 }
 
@@ -89,9 +90,9 @@ impl Piece {
     }
 
     fn along_homogeneous(&self, w: DVec4) -> ([f64; 3], [f64; 3]) {
-        let length = w.length();
+        let length = w.truncate().length();
         let at_center = self.third.map(|ball| ball.center.dot(w).abs());
-        let stray = self.third.map(|ball| ball.radius * length);
+        let stray = self.third.map(|ball| ball.radius * length + ball.weight_radius * w.w.abs());
         let (h, far) = (self.half, self.half + self.offset);
         let reach = |i: usize| at_center[i] * h.x + at_center[i + 1] * h.y + stray[i] * far.x + stray[i + 1] * far.y;
         (self.second.map(|s| s.dot(w)), [reach(0), reach(1), reach(2)])

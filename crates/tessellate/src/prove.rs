@@ -35,6 +35,9 @@ pub(crate) struct Prover<'a> {
     accept: bool,
 }
 
+/// Facets lower than this share of the tolerance may face any way.
+const FOLD_HEIGHT: f64 = 0.05;
+
 /// What is wrong with a triangle.
 enum Fault {
     None,
@@ -68,7 +71,7 @@ impl<'a> Prover<'a> {
         let mut requests = Vec::new();
         let mut errors: Vec<f64> = vec![f64::NAN; work.mesh.triangles.len()];
         let mut queue: VecDeque<u32> = (0..work.mesh.triangles.len() as u32).collect();
-        let budget = 4 * work.mesh.triangles.len() + 20_000;
+        let budget = 16 * work.mesh.triangles.len() + 4_000;
         let mut steps = 0usize;
         while let Some(t) = queue.pop_front() {
             if !errors[t as usize].is_nan() {
@@ -195,6 +198,11 @@ impl<'a> Prover<'a> {
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
+        if self.is_folded(work, t, &facet) {
+            // A chord of the boundary that leaves the face further than the facet is high.
+            let chord = (0..3).find(|&i| facet.sag[i].is_some());
+            return (f64::INFINITY, chord.map_or(Fault::Inside(None), Fault::Edge));
+        }
         let corners = work.mesh.triangles[t as usize];
         for i in 0..3 {
             let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.normals[v as usize]);
@@ -206,6 +214,17 @@ impl<'a> Prover<'a> {
             }
         }
         (bound.error, Fault::None)
+    }
+
+    /// True where the facet faces away from the surface at one of its corners: it lies outside the face, doubled back.
+    fn is_folded(&self, work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> bool {
+        let [a, b, c] = facet.xyz;
+        let cross = (b - a).cross(c - a);
+        let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt();
+        // Facets lower than this can do no harm whichever way they face.
+        let height = cross.length() / longest.max(f64::MIN_POSITIVE);
+        height > FOLD_HEIGHT * self.limits.tolerance
+            && work.mesh.triangles[t as usize].iter().any(|&v| work.normals[v as usize].dot(cross) < 0.0)
     }
 
     fn boundary_segment(&self, work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<Segment> {

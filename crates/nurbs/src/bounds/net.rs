@@ -88,8 +88,13 @@ impl Net {
 
     fn ball(&self) -> Ball4 {
         let center = self.middle();
-        let radius = self.points.iter().fold(0.0f64, |m, p| m.max((*p - center).length_squared())).sqrt();
-        Ball4 { center, radius }
+        let (mut radius, mut weight_radius) = (0.0f64, 0.0f64);
+        for p in &self.points {
+            let d = *p - center;
+            radius = radius.max(d.truncate().length_squared());
+            weight_radius = weight_radius.max(d.w.abs());
+        }
+        Ball4 { center, radius: radius.sqrt(), weight_radius }
     }
 
     fn norm(&self) -> f64 {
@@ -127,7 +132,9 @@ pub(super) fn slack(patch: &BezierPatch, span: UvBox) -> f64 {
     let middle = patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64;
     let size = span.size();
     let cell = cell(&Net::new(patch, middle), middle, span);
-    let [uuu, uuv, uvv, vvv] = cell.third.map(|ball| ball.radius);
+    // A facet is measured from one of its corners, which lies within the patch.
+    let extent = patch.points.iter().fold(0.0f64, |m, p| m.max(p.distance(middle)));
+    let [uuu, uuv, uvv, vvv] = cell.third.map(|ball| ball.radius + extent * ball.weight_radius);
     let DVec2 { x, y } = size;
     (uuu * x * x * x + 3.0 * uuv * x * x * y + 3.0 * uvv * x * y * y + vvv * y * y * y) / (16.0 * cell.least_weight)
 }
