@@ -10,9 +10,13 @@ use chordal_tessellate::Cancel;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// The name and version of the schema of [`Info`].
 pub const INFO_SCHEMA: &str = "chordal-info/1";
+
+/// What a face may take while the box is measured.
+const FACE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// What is in a file. Lengths are millimetres; counts of the whole are as placed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,7 +85,7 @@ pub struct NodeInfo {
 /// Looks at everything in a model.
 pub fn info(model: &Model) -> Info {
     let uses = part_uses(model);
-    let whole = tight_box(model, &uses, edge_box(model, &uses), &Cancel::default());
+    let whole = tight_box(model, &uses, edge_box(model, &uses), Some(FACE_TIMEOUT), &Cancel::default());
     let parts: Vec<PartInfo> =
         model.parts.par_iter().zip(&uses).map(|(part, part_use)| part_info(part, part_use)).collect();
     let mut faces_by_kind = BTreeMap::new();

@@ -50,7 +50,7 @@ pub fn resolve(
     let (tolerance, diagonal, size) = match options.tolerance {
         Tolerance::Millimetres(mm) => (mm, None, edges),
         Tolerance::Percent(percent) => {
-            let tight = tight_box(model, &uses, edges, cancel);
+            let tight = tight_box(model, &uses, edges, options.face_timeout, cancel);
             (percent / 100.0 * tight.diagonal(), Some(tight.diagonal()), tight)
         }
     };

@@ -18,6 +18,7 @@ use crate::placement::PartUse;
 use chordal_brep::Model;
 use chordal_tessellate::Cancel;
 use glam::{DAffine3, DVec3};
+use std::time::Duration;
 
 /// An axis-aligned box in millimetres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,11 +91,18 @@ pub fn edge_box(model: &Model, uses: &[PartUse]) -> TightBox {
     found
 }
 
-/// The tight box of every placed face; starts from [`edge_box`].
-pub fn tight_box(model: &Model, uses: &[PartUse], edges: TightBox, cancel: &Cancel) -> TightBox {
+/// The tight box of every placed face; starts from [`edge_box`]. A face that takes longer than `face_timeout` counts by
+/// its edges only.
+pub fn tight_box(
+    model: &Model,
+    uses: &[PartUse],
+    edges: TightBox,
+    face_timeout: Option<Duration>,
+    cancel: &Cancel,
+) -> TightBox {
     let mut found = edges;
     for (part, part_use) in model.parts.iter().zip(uses).filter(|(_, u)| u.instances > 0) {
-        faces::include(&mut found, part, part_use, cancel);
+        faces::include(&mut found, part, part_use, face_timeout, cancel);
     }
     found
 }

@@ -12,7 +12,7 @@ fn model(name: &str) -> Model {
 
 fn size(model: &Model) -> DVec3 {
     let uses = part_uses(model);
-    let found = tight_box(model, &uses, edge_box(model, &uses), &Cancel::default());
+    let found = tight_box(model, &uses, edge_box(model, &uses), None, &Cancel::default());
     found.max - found.min
 }
 

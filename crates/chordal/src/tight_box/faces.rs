@@ -15,10 +15,20 @@ const COARSE: f64 = 0.01;
 /// Samples per side of a triangle that is searched, and how often the search narrows.
 const SIDE: usize = 4;
 const ZOOMS: usize = 8;
-/// A face that cannot be meshed coarsely in this time will fail later as well, and with a reason.
-const GIVE_UP: Duration = Duration::from_secs(20);
+/// Triangles whose sag stands for that of all of a face.
+const SPREAD: usize = 100;
+/// What is looked for, relative to the box: far finer than what a percentage is asked in.
+const MATTERS: f64 = 1e-6;
+/// A face that needs more triangles than this at the coarse tolerance will fail later as well, and with a reason.
+const GIVE_UP: usize = 100_000;
 
-pub(super) fn include(found: &mut TightBox, part: &Part, part_use: &PartUse, cancel: &Cancel) {
+pub(super) fn include(
+    found: &mut TightBox,
+    part: &Part,
+    part_use: &PartUse,
+    face_timeout: Option<Duration>,
+    cancel: &Cancel,
+) {
     let faces: Vec<&Face> = part.faces.iter().filter(|f| reaches_out(f, found, part_use)).collect();
     if faces.is_empty() {
         return;
@@ -38,10 +48,11 @@ pub(super) fn include(found: &mut TightBox, part: &Part, part_use: &PartUse, can
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return;
     }
-    let options = Options::new(tolerance)
+    let mut options = Options::new(tolerance)
         .with_angle(Some(0.6))
         .with_bound(Bound::Estimated)
-        .with_face_timeout(Some(GIVE_UP));
+        .with_face_timeout(face_timeout);
+    options.face_triangles = GIVE_UP;
     let (mesh, _) = tessellate_part(&coarse, &options, cancel, &|_| ());
     for world in &part_use.worlds {
         mesh.positions.iter().for_each(|&p| found.include(world.transform_point3(p)));
@@ -50,9 +61,10 @@ pub(super) fn include(found: &mut TightBox, part: &Part, part_use: &PartUse, can
         let FaceGeometry::Surface(surface) = &face.geometry else { continue };
         let mut facets: Vec<Facet> =
             face_mesh.triangles.iter().map(|t| Facet::of(&mesh, face_mesh, *t)).collect();
+        let slack = slack(&mut facets, surface, tolerance);
         for world in &part_use.worlds {
             for direction in Direction::ALL {
-                climb(found, surface, &mut facets, tolerance, world, direction);
+                climb(found, surface, &mut facets, slack, world, direction);
             }
         }
     }
@@ -90,8 +102,8 @@ fn outer_size(faces: &[&Face], part_use: &PartUse) -> f64 {
 struct Facet {
     uv: [DVec2; 3],
     xyz: [DVec3; 3],
-    /// How far the surface lies off the triangle, at samples; found when first needed.
-    sag: Option<f64>,
+    /// From the triangle to the surface, at samples; found when first needed.
+    sag: Option<[DVec3; 4]>,
 }
 
 impl Facet {
@@ -108,20 +120,28 @@ impl Facet {
         self.uv[0] + (self.uv[1] - self.uv[0]) * st.x + (self.uv[2] - self.uv[0]) * st.y
     }
 
-    fn sag(&mut self, surface: &Surface) -> f64 {
+    fn sag(&mut self, surface: &Surface) -> [DVec3; 4] {
         if let Some(sag) = self.sag {
             return sag;
         }
         let [a, b, c] = self.xyz;
         let off = |s: f64, t: f64| {
             let st = DVec2::new(s, t);
-            surface.point(self.uv_at(st)).distance(a + (b - a) * s + (c - a) * t)
+            surface.point(self.uv_at(st)) - (a + (b - a) * s + (c - a) * t)
         };
         let sag = [(0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (1.0 / 3.0, 1.0 / 3.0)].map(|(s, t)| off(s, t));
-        let sag = sag.into_iter().fold(0.0, f64::max);
         self.sag = Some(sag);
         sag
     }
+}
+
+/// How far the surface may rise over the corners of a triangle. The coarse mesh is only estimated to keep its
+/// tolerance, so that twice that is looked at; where a spread of triangles sags far less, four times their sag.
+fn slack(facets: &mut [Facet], surface: &Surface, tolerance: f64) -> f64 {
+    let stride = facets.len() / SPREAD + 1;
+    let sag =
+        facets.iter_mut().step_by(stride).flat_map(|f| f.sag(surface)).map(DVec3::length).fold(0.0, f64::max);
+    (4.0 * sag).min(2.0 * tolerance)
 }
 
 /// Searches the triangles that may hold the extreme along one direction, the most promising first.
@@ -129,7 +149,7 @@ fn climb(
     found: &mut TightBox,
     surface: &Surface,
     facets: &mut [Facet],
-    tolerance: f64,
+    slack: f64,
     world: &DAffine3,
     direction: Direction,
 ) {
@@ -137,16 +157,15 @@ fn climb(
     let steep = gradient.length();
     let corner =
         |f: &Facet| f.xyz.iter().map(|&p| gradient.dot(p) + constant).fold(f64::NEG_INFINITY, f64::max);
-    // The coarse mesh is only estimated to keep its tolerance: twice that, and twice the sag, is looked at.
-    let near: Vec<&mut Facet> = facets
-        .iter_mut()
-        .filter(|f| corner(f) + 2.0 * tolerance * steep > found.extreme(direction))
-        .collect();
+    let near: Vec<&mut Facet> =
+        facets.iter_mut().filter(|f| corner(f) + slack * steep > found.extreme(direction)).collect();
+    let rise = |sag: [DVec3; 4]| sag.iter().map(|v| gradient.dot(*v)).fold(0.0, f64::max);
     let mut promising: Vec<(f64, &mut Facet)> =
-        near.into_iter().map(|f| (corner(f) + 2.0 * f.sag(surface) * steep, f)).collect();
+        near.into_iter().map(|f| (corner(f) + 2.0 * rise(f.sag(surface)), f)).collect();
     promising.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let matters = MATTERS * found.diagonal();
     for (promise, facet) in promising {
-        if promise <= found.extreme(direction) {
+        if promise <= found.extreme(direction) + matters {
             return;
         }
         if let Some(highest) = search(surface, facet, gradient) {
