@@ -4,7 +4,7 @@
 //! its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
 //! Cells of a NURBS surface are its Bézier patches (rational ones subdivided), in homogeneous coordinates.
 
-use crate::{Curve, NurbsSurface, Range, Surface, UvBox};
+use crate::{Curve, NurbsSurface, Range, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3, DVec4};
 
 mod net;
@@ -171,7 +171,7 @@ impl<'a> SurfaceBounds<'a> {
 
     /// The surface at a point of the chart.
     pub fn point(&self, p_uv: DVec2) -> DVec3 {
-        self.surface.point(self.wrap.apply(p_uv))
+        self.wrap.point(self.surface, p_uv)
     }
 
     /// The unit normal of the surface, at any turn of a closed one; `None` where it has none.
@@ -321,6 +321,22 @@ impl Wrap {
             }
             _ => [None, None],
         })
+    }
+
+    /// The surface at a point of such a chart. Quicker than asking the surface, which would look for its seam each time.
+    pub fn point(&self, surface: &Surface, p_uv: DVec2) -> DVec3 {
+        match surface {
+            Surface::Nurbs(nurbs) => nurbs.point(self.apply(p_uv)),
+            _ => surface.point(self.apply(p_uv)),
+        }
+    }
+
+    /// As [`Wrap::point`], with derivatives.
+    pub fn jet(&self, surface: &Surface, p_uv: DVec2) -> SurfaceJet {
+        match surface {
+            Surface::Nurbs(nurbs) => nurbs.jet(self.apply(p_uv)),
+            _ => surface.jet(self.apply(p_uv)),
+        }
     }
 
     /// Brings a point of a chart that runs over the seam back to the surface's own domain.

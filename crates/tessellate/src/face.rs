@@ -333,11 +333,22 @@ impl<'a, 's> FaceWork<'a, 's> {
                 && matches!(curve, chordal_nurbs::Curve::Line { .. });
             if !exact {
                 let p = curve.point(0.5 * (samples.t[chord as usize] + samples.t[chord as usize + 1]));
-                let uv = self.context.surface.invert(p, Some(point.uv));
+                let next = self.next_on_boundary(i);
+                let middle = point.uv.midpoint(self.chart.points[next].uv);
+                let uv = self.context.surface.descend(p, middle);
                 gap = gap.max(self.context.surface.point(uv).distance(p));
             }
         }
         gap
+    }
+
+    fn next_on_boundary(&self, i: usize) -> usize {
+        let at = i as u32;
+        let runs_to = self.chart.loops.iter().find(|&&(start, end)| (start..end).contains(&at));
+        match runs_to {
+            Some(&(start, end)) if at + 1 == end => start as usize,
+            _ => i + 1,
+        }
     }
 
     /// c·∫√|K| dA / ε over the triangles (DESIGN "Economy"), or the strips of a singly curved face.

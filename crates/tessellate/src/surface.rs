@@ -25,11 +25,11 @@ impl<'a> FaceSurface<'a> {
     }
 
     pub fn point(&self, p_uv: DVec2) -> DVec3 {
-        self.surface.point(self.wrap.apply(p_uv))
+        self.wrap.point(self.surface, p_uv)
     }
 
     pub fn jet(&self, p_uv: DVec2) -> SurfaceJet {
-        self.surface.jet(self.wrap.apply(p_uv))
+        self.wrap.jet(self.surface, p_uv)
     }
 
     /// The unit normal; where it is undefined, zero.
@@ -52,6 +52,25 @@ impl<'a> FaceSurface<'a> {
             self.inverter.get_or_init(|| SurfaceInverter::new(self.surface, self.surface.domain()));
         let uv = inverter.invert(p_xyz, near.map(|n| self.wrap.apply(n))).uv;
         near.map_or(uv, |near| self.nearest_turn(uv, near))
+    }
+
+    /// The point nearest to `p_xyz` in the valley that `start` lies in: a few Gauss–Newton steps, no search.
+    pub fn descend(&self, p_xyz: DVec3, start: DVec2) -> DVec2 {
+        const STEPS: usize = 3;
+        let mut uv = start;
+        for _ in 0..STEPS {
+            let jet = self.jet(uv);
+            let r = p_xyz - jet.p;
+            let (e, f, g) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+            let (a, b) = (jet.du.dot(r), jet.dv.dot(r));
+            let det = e * g - f * f;
+            let step = DVec2::new((a * g - b * f) / det, (b * e - a * f) / det);
+            if !step.is_finite() {
+                break;
+            }
+            uv += step;
+        }
+        uv
     }
 
     /// The same point of the surface, moved by whole periods to be nearest to `near`.

@@ -107,7 +107,10 @@ pub(super) fn torus(facet: &Facet, frame: &Frame, major: f64, minor: f64, enough
         return FacetBound::NONE;
     }
     let (sine, cosine) = (0.5 * (u_low + u_high)).sin_cos();
-    let depth = |p: DVec3| (p.truncate().length() - major).hypot(p.z) - minor;
+    let depth = |p: DVec3| {
+        let q = p.truncate().length() - major;
+        (q * q + p.z * p.z).sqrt() - minor
+    };
     let nearest = local.iter().map(|p| p.truncate().length()).fold(f64::INFINITY, f64::min) * half_turn.cos();
     let second = |d: DVec3, rho: f64| {
         let radial = (d.x * cosine + d.y * sine).abs() + d.truncate().length() * half_turn.sin();
@@ -116,6 +119,16 @@ pub(super) fn torus(facet: &Facet, frame: &Frame, major: f64, minor: f64, enough
         across / rho + d.length_squared() / nearest
     };
     let d = [c - b, a - c, b - a];
+    // Small facets need no samples: at the corners ρ is right, and in between it bends this much at most.
+    let longest = d.iter().fold(0.0f64, |m, d| m.max(d.length()));
+    let rho = minor - 0.6 * longest;
+    if rho > 0.5 * minor && nearest > 0.0 {
+        let bends = d.map(|d| second(d, rho));
+        let error = bends[0].max(bends[1]).max(bends[2]) / 6.0;
+        if error <= enough {
+            return FacetBound { error, edges: bends.map(|b| b / 8.0) };
+        }
+    }
     let mut parts = 4;
     loop {
         let mut worst = 0.0f64;
@@ -133,7 +146,7 @@ pub(super) fn torus(facet: &Facet, frame: &Frame, major: f64, minor: f64, enough
         }
         // ρ changes no faster than position: between samples it is at most an edge of the lattice lower.
         let scale = (parts * parts) as f64;
-        let step = d.iter().fold(0.0f64, |m, d| m.max(d.length())) / parts as f64;
+        let step = longest / parts as f64;
         let rho = deepest - 0.6 * step;
         if !(nearest > 0.0) || parts >= 32 && !(rho > 0.0) {
             return FacetBound::NONE;
