@@ -4,10 +4,13 @@
 //! its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
 //! Cells of a NURBS surface are its Bézier patches (rational ones subdivided), in homogeneous coordinates.
 
-use crate::{Curve, NurbsSurface, Range, Surface, SurfaceJet, UvBox};
+use crate::{Curve, Range, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3, DVec4};
 
+mod cells;
 mod net;
+
+use cells::CellTable;
 
 /// Homogeneous vectors near `center`: the spatial part within `radius`, the weight within `weight_radius`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -110,18 +113,6 @@ struct ProfileTable {
     jumps: Vec<f64>,
 }
 
-/// The cells of a NURBS surface.
-#[derive(Clone, Debug)]
-struct CellTable {
-    breaks_u: Vec<f64>,
-    breaks_v: Vec<f64>,
-    /// Cell (i, j) at `i * (breaks_v.len() - 1) + j`.
-    cells: Vec<Cell>,
-    /// Jumps of Su across `breaks_u[i]` and of Sv across `breaks_v[j]`, the largest along the line.
-    jumps_u: Vec<f64>,
-    jumps_v: Vec<f64>,
-}
-
 #[derive(Clone, Debug)]
 enum Prepared {
     /// Third derivatives by formula.
@@ -195,7 +186,7 @@ impl<'a> SurfaceBounds<'a> {
         match (&self.prepared, self.surface) {
             (Prepared::Profile(t), Surface::Extrusion { .. }) => (pick(&t.breaks, &t.jumps), Vec::new()),
             (Prepared::Profile(t), _) => (Vec::new(), pick(&t.breaks, &t.jumps)),
-            (Prepared::Cells(t), _) => (pick(&t.breaks_u, &t.jumps_u), pick(&t.breaks_v, &t.jumps_v)),
+            (Prepared::Cells(t), _) => (pick(&t.spans_u, &t.jumps_u), pick(&t.spans_v, &t.jumps_v)),
             _ => (Vec::new(), Vec::new()),
         }
     }
@@ -221,23 +212,7 @@ impl<'a> SurfaceBounds<'a> {
                 DVec2::ZERO
             }
             Prepared::Profile(table) => self.profile_pieces(table, b, out),
-            Prepared::Cells(table) => {
-                let (i0, i1) = overlapped(&table.breaks_u, b.u());
-                let (j0, j1) = overlapped(&table.breaks_v, b.v());
-                let columns = table.breaks_v.len() - 1;
-                for i in i0..i1 {
-                    let u = Range::new(b.min.x.max(table.breaks_u[i]), b.max.x.min(table.breaks_u[i + 1]));
-                    for j in j0..j1 {
-                        let v =
-                            Range::new(b.min.y.max(table.breaks_v[j]), b.max.y.min(table.breaks_v[j + 1]));
-                        out.push(table.cells[i * columns + j].piece(UvBox::from_ranges(u, v)));
-                    }
-                }
-                let largest = |jumps: &[f64], from: usize, to: usize| {
-                    jumps[(from + 1).min(to)..to].iter().fold(0.0f64, |m, &j| m.max(j))
-                };
-                DVec2::new(largest(&table.jumps_u, i0, i1), largest(&table.jumps_v, j0, j1))
-            }
+            Prepared::Cells(table) => table.pieces(b, out),
         }
     }
 
@@ -417,61 +392,5 @@ impl ProfileTable {
         });
         let jumps = jumps.collect();
         Self { breaks, norms, jumps }
-    }
-}
-
-impl CellTable {
-    /// Slack that a cell may add to a facet as large as itself, as a share of the resolution.
-    const SLACK: f64 = 0.1;
-    /// Patches are cut into no more parts than this in each direction.
-    const MAX_PARTS: f64 = 32.0;
-    /// Control points of all cells together.
-    const MAX_POINTS: f64 = 1_000_000.0;
-
-    /// `None` where a weight is not positive: nothing can be bounded then.
-    fn new(surface: &NurbsSurface, domain: UvBox, resolution: f64) -> Option<Self> {
-        let patches = surface.bezier_patches(domain);
-        if patches.iter().any(|(_, p)| p.weights.as_ref().is_some_and(|w| w.iter().any(|&w| w <= 0.0))) {
-            return None;
-        }
-        let distinct = |values: &mut Vec<f64>| {
-            values.sort_by(f64::total_cmp);
-            values.dedup();
-        };
-        let mut spans_u: Vec<f64> = patches.iter().flat_map(|(b, _)| [b.min.x, b.max.x]).collect();
-        let mut spans_v: Vec<f64> = patches.iter().flat_map(|(b, _)| [b.min.y, b.max.y]).collect();
-        distinct(&mut spans_u);
-        distinct(&mut spans_v);
-        // The slack of a cell shrinks with the fourth power of its size.
-        let slack = patches.iter().map(|(span, patch)| net::slack(patch, *span)).fold(0.0, f64::max);
-        let points: usize = patches.iter().map(|(_, patch)| patch.points.len()).sum();
-        let most = (Self::MAX_POINTS / points as f64).sqrt().clamp(1.0, Self::MAX_PARTS);
-        let parts = (slack / (Self::SLACK * resolution)).powf(0.25).ceil().clamp(1.0, most) as usize;
-        let columns = (spans_v.len() - 1) * parts;
-        let mut cells = vec![Cell::default(); (spans_u.len() - 1) * parts * columns];
-        let mut jumps_u = vec![0.0; (spans_u.len() - 1) * parts + 1];
-        let mut jumps_v = vec![0.0; columns + 1];
-        let rows = spans_v.len() - 1;
-        for (k, (span, patch)) in patches.iter().enumerate() {
-            let (i, j) = (k / rows, k % rows);
-            for (c, cell) in net::cells(patch, *span, parts).into_iter().enumerate() {
-                cells[(i * parts + c / parts) * columns + j * parts + c % parts] = cell;
-            }
-            if i > 0 {
-                let jump = net::jump_u(&patches[k - rows], &patches[k]);
-                jumps_u[i * parts] = jump.max(jumps_u[i * parts]);
-            }
-            if j > 0 {
-                let jump = net::jump_v(&patches[k - 1], &patches[k]);
-                jumps_v[j * parts] = jump.max(jumps_v[j * parts]);
-            }
-        }
-        Some(Self {
-            breaks_u: subdivided(&spans_u, parts),
-            breaks_v: subdivided(&spans_v, parts),
-            cells,
-            jumps_u,
-            jumps_v,
-        })
     }
 }

@@ -106,25 +106,19 @@ impl Net {
     }
 }
 
-/// The cells of `parts` × `parts` of the patch over `span`, row by row.
-pub(super) fn cells(patch: &BezierPatch, span: UvBox, parts: usize) -> Vec<Cell> {
-    let size = span.size() / parts as f64;
+/// Cell `at` of the patch over `span` cut into `parts` in u and v.
+pub(super) fn cell_of(patch: &BezierPatch, span: UvBox, at: [usize; 2], parts: [usize; 2]) -> Cell {
+    let size = span.size() / DVec2::new(parts[0] as f64, parts[1] as f64);
     let middle = patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64;
-    let whole = Net::new(patch, middle);
-    let part = |k: usize| (k as f64 / parts as f64, (k + 1) as f64 / parts as f64);
-    let mut cells = Vec::with_capacity(parts * parts);
-    for a in 0..parts {
-        for b in 0..parts {
-            let mut net = Net { degree: whole.degree, points: whole.points.clone() };
-            if parts > 1 {
-                net.restrict(0, part(a).0, part(a).1);
-                net.restrict(1, part(b).0, part(b).1);
-            }
-            let corner = span.min + DVec2::new(a as f64, b as f64) * size;
-            cells.push(cell(&net, middle, UvBox::new(corner, corner + size)));
+    let mut net = Net::new(patch, middle);
+    for axis in 0..2 {
+        if parts[axis] > 1 {
+            let part = |k: usize| k as f64 / parts[axis] as f64;
+            net.restrict(axis, part(at[axis]), part(at[axis] + 1));
         }
     }
-    cells
+    let corner = span.min + DVec2::new(at[0] as f64, at[1] as f64) * size;
+    cell(&net, middle, UvBox::new(corner, corner + size))
 }
 
 /// What the uncertainty of the third derivatives over a whole patch adds to the bound of a facet as large as the patch.
