@@ -35,6 +35,9 @@ pub(crate) struct Prover<'a> {
     accept: bool,
 }
 
+/// A flip is worth trying for facets whose error is at most this many tolerances.
+const FLIP_HELPS: f64 = 3.0;
+
 /// Facets lower than this share of the tolerance may face any way.
 const FOLD_HEIGHT: f64 = 0.05;
 
@@ -105,7 +108,7 @@ impl<'a> Prover<'a> {
                     if work.mesh.triangles.len() > self.options.face_triangles {
                         return Err(format!("it needs more than {} triangles", work.mesh.triangles.len()));
                     }
-                    if !self.mend(work, t, edge) {
+                    if !self.mend(work, t, error, edge) {
                         match self.coarse_boundary(work, t) {
                             Some(_) if self.accept => continue,
                             Some(chord) => requests.push(chord),
@@ -198,10 +201,11 @@ impl<'a> Prover<'a> {
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
-        if self.is_folded(work, t, &facet) {
-            // A chord of the boundary that leaves the face further than the facet is high.
-            let chord = (0..3).find(|&i| facet.sag[i].is_some());
-            return (f64::INFINITY, chord.map_or(Fault::Inside(None), Fault::Edge));
+        if let Some(chord) = (0..3).find(|&i| facet.sag[i].is_some())
+            && self.is_folded(work, t, &facet)
+        {
+            // The chord leaves the face by more than the facet is high.
+            return (f64::INFINITY, Fault::Edge(chord));
         }
         let corners = work.mesh.triangles[t as usize];
         for i in 0..3 {
@@ -224,7 +228,10 @@ impl<'a> Prover<'a> {
         // Facets lower than this can do no harm whichever way they face.
         let height = cross.length() / longest.max(f64::MIN_POSITIVE);
         let normals = work.mesh.triangles[t as usize].map(|v| work.normals[v as usize]);
-        height > FOLD_HEIGHT * self.limits.tolerance && (normals[0] + normals[1] + normals[2]).dot(cross) < 0.0
+        let [n, m, k] = normals;
+        // Where the normals themselves disagree, one facet cannot tell.
+        let agree = n.dot(m).min(m.dot(k)).min(k.dot(n)) > 0.3;
+        agree && height > FOLD_HEIGHT * self.limits.tolerance && (n + m + k).dot(cross) < 0.0
     }
 
     fn boundary_segment(&self, work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<Segment> {
@@ -233,8 +240,8 @@ impl<'a> Prover<'a> {
     }
 
     /// Flips an edge or inserts a point; false where neither is possible.
-    fn mend(&mut self, work: &mut FaceWork<'_, '_>, t: u32, edge: Option<usize>) -> bool {
-        if edge.is_none() && self.flip_helps(work, t) {
+    fn mend(&mut self, work: &mut FaceWork<'_, '_>, t: u32, error: f64, edge: Option<usize>) -> bool {
+        if edge.is_none() && error < FLIP_HELPS * self.limits.tolerance && self.flip_helps(work, t) {
             return true;
         }
         let corners = work.mesh.corners(t);
