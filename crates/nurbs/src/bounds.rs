@@ -50,7 +50,11 @@ impl Cell {
         let [uu, uv, vv] = self.second;
         Piece {
             origin: self.origin,
-            second: [uu + uuu * step.x + uuv * step.y, uv + uuv * step.x + uvv * step.y, vv + uvv * step.x + vvv * step.y],
+            second: [
+                uu + uuu * step.x + uuv * step.y,
+                uv + uuv * step.x + uvv * step.y,
+                vv + uvv * step.x + vvv * step.y,
+            ],
             third: self.third,
             half: b.size() * 0.5,
             offset: step.abs(),
@@ -97,7 +101,8 @@ impl Piece {
         let at_center = self.third.map(|ball| ball.center.dot(w).abs());
         let stray = self.third.map(|ball| ball.radius * length + ball.weight_radius * w.w.abs());
         let (h, far) = (self.half, self.half + self.offset);
-        let reach = |i: usize| at_center[i] * h.x + at_center[i + 1] * h.y + stray[i] * far.x + stray[i + 1] * far.y;
+        let reach =
+            |i: usize| at_center[i] * h.x + at_center[i + 1] * h.y + stray[i] * far.x + stray[i + 1] * far.y;
         (self.second.map(|s| s.dot(w)), [reach(0), reach(1), reach(2)])
     }
 }
@@ -145,7 +150,9 @@ impl<'a> SurfaceBounds<'a> {
         let prepared = match surface {
             Surface::Extrusion { profile, .. } => Prepared::Profile(ProfileTable::new(profile, base.u())),
             Surface::Revolution { profile, .. } => Prepared::Profile(ProfileTable::new(profile, base.v())),
-            Surface::Nurbs(nurbs) => CellTable::new(nurbs, base, resolution).map_or(Prepared::Unknown, Prepared::Cells),
+            Surface::Nurbs(nurbs) => {
+                CellTable::new(nurbs, base, resolution).map_or(Prepared::Unknown, Prepared::Cells)
+            }
             Surface::Offset { .. } => Prepared::Unknown,
             _ => Prepared::Elementary,
         };

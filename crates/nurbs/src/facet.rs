@@ -56,7 +56,9 @@ pub fn facet_bound(
         }
         Surface::Sphere { frame, radius } => elementary::sphere(facet, frame.origin, *radius),
         // Where the tube is wider than its circle, only the part that faces away from the axis has the simple form.
-        Surface::Torus { frame, major, minor } if facet.uv.iter().all(|p| major + minor * p.y.cos() > 0.0) => {
+        Surface::Torus { frame, major, minor }
+            if facet.uv.iter().all(|p| major + minor * p.y.cos() > 0.0) =>
+        {
             let own = elementary::torus(facet, frame, *major, *minor, enough);
             // Facets long against the tube's radius are beyond it: derivatives must do.
             if own.error.is_finite() { own } else { general::bound(bounds, facet, enough, scratch) }

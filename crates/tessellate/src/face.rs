@@ -17,6 +17,8 @@ pub(crate) struct FaceResult {
     pub keys: Vec<Key>,
     pub normals: Vec<DVec3>,
     pub triangles: Vec<[u32; 3]>,
+    /// The outer loop runs against the face's sense: the neighbours tell which of the two is right.
+    pub doubtful: bool,
     /// Positions of the keys that are private.
     pub private: Vec<DVec3>,
     pub proven_error: f64,
@@ -24,6 +26,14 @@ pub(crate) struct FaceResult {
     pub bound: &'static str,
     /// c·∫√|K| dA / ε, and the strips of a singly curved face.
     pub curvature_bound: f64,
+}
+
+impl FaceResult {
+    /// Makes the face face the other way.
+    pub fn turn_over(&mut self) {
+        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        self.normals.iter_mut().for_each(|n| *n = -*n);
+    }
 }
 
 /// What became of a face in one round.
@@ -313,6 +323,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             uv: self.mesh.points,
             keys,
             triangles,
+            doubtful: self.chart.reversed,
             private,
             proven_error,
             gap,

@@ -10,6 +10,7 @@ mod face;
 mod lower_bound;
 mod metric;
 mod options;
+mod orient;
 mod place;
 mod prove;
 mod report;

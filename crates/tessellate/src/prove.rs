@@ -224,7 +224,8 @@ impl<'a> Prover<'a> {
     fn is_folded(&self, work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> bool {
         let [a, b, c] = facet.xyz;
         let cross = (b - a).cross(c - a);
-        let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt();
+        let longest =
+            (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt();
         // Facets lower than this can do no harm whichever way they face.
         let height = cross.length() / longest.max(f64::MIN_POSITIVE);
         let normals = work.mesh.triangles[t as usize].map(|v| work.normals[v as usize]);

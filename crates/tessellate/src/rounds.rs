@@ -6,6 +6,7 @@ use crate::face::{FaceResult, Outcome, mesh_face};
 use crate::lower_bound::lower_bound;
 use crate::metric::Limits;
 use crate::options::{Cancel, Options};
+use crate::orient::settle_orientation;
 use crate::report::{FaceReport, PartReport};
 use crate::stitch::stitch;
 use crate::surface::FaceSurface;
@@ -21,7 +22,7 @@ use std::time::Instant;
 const MAX_ROUNDS: usize = 8;
 
 /// From this round on loops that still cross are taken to cross in truth.
-const LAST_RESORT: usize = 4;
+const LAST_RESORT: usize = 6;
 
 /// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter.
 const AIM: f64 = 0.995;
@@ -103,7 +104,8 @@ pub fn tessellate_part(
 
     let clock = Instant::now();
     job.describe(&edges, &outcomes, &mut report);
-    let faces: Vec<Option<Box<FaceResult>>> = outcomes.into_iter().map(Result::ok).collect();
+    let mut faces: Vec<Option<Box<FaceResult>>> = outcomes.into_iter().map(Result::ok).collect();
+    settle_orientation(&mut faces);
     let mesh = stitch(part, &edges, &faces);
     report.seconds.stitch = clock.elapsed().as_secs_f64();
     (mesh, report)

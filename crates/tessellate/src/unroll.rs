@@ -23,8 +23,8 @@ pub(crate) struct Chart {
     pub loops: Vec<(u32, u32)>,
     /// Positions of the vertices with `Key::Private`.
     pub private: Vec<DVec3>,
-    /// The outer loop ran the other way in the file: its sense flag is wrong, or the loop folds over itself. Triangles
-    /// follow the loop, because that is what the neighbours agree with.
+    /// The outer loop ran the other way in the file: it or the sense flag is wrong, or the loop folds over itself. Triangles
+    /// follow the loop until the neighbours are known.
     pub reversed: bool,
 }
 

@@ -130,14 +130,20 @@ pub(super) fn slack(patch: &BezierPatch, span: UvBox) -> f64 {
     let extent = patch.points.iter().fold(0.0f64, |m, p| m.max(p.distance(middle)));
     let [uuu, uuv, uvv, vvv] = cell.third.map(|ball| ball.radius + extent * ball.weight_radius);
     let DVec2 { x, y } = size;
-    (uuu * x * x * x + 3.0 * uuv * x * x * y + 3.0 * uvv * x * y * y + vvv * y * y * y) / (16.0 * cell.least_weight)
+    (uuu * x * x * x + 3.0 * uuv * x * x * y + 3.0 * uvv * x * y * y + vvv * y * y * y)
+        / (16.0 * cell.least_weight)
 }
 
 fn cell(net: &Net, origin: DVec3, over: UvBox) -> Cell {
     let size = over.size();
     let (du, dv) = (net.derivative(0, size.x), net.derivative(1, size.y));
     let (duu, duv, dvv) = (du.derivative(0, size.x), du.derivative(1, size.y), dv.derivative(1, size.y));
-    let third = [duu.derivative(0, size.x), duu.derivative(1, size.y), duv.derivative(1, size.y), dvv.derivative(1, size.y)];
+    let third = [
+        duu.derivative(0, size.x),
+        duu.derivative(1, size.y),
+        duv.derivative(1, size.y),
+        dvv.derivative(1, size.y),
+    ];
     let least_weight = net.points.iter().fold(f64::INFINITY, |m, p| m.min(p.w));
     let extent = net.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length() / p.w.abs()));
     let rate = |d: &Net| (d.norm() + extent * d.weight_norm()) / least_weight;
@@ -162,7 +168,12 @@ pub(super) fn jump_u(left: &(UvBox, BezierPatch), right: &(UvBox, BezierPatch)) 
         let [m, n] = patch.degree;
         let row = |i: usize, j: usize| i * (n + 1) + j;
         let factor = m as f64 / span.size().x;
-        end_rates((0..=n).map(|j| if last { (row(m - 1, j), row(m, j)) } else { (row(0, j), row(1, j)) }), patch, factor, last)
+        end_rates(
+            (0..=n).map(|j| if last { (row(m - 1, j), row(m, j)) } else { (row(0, j), row(1, j)) }),
+            patch,
+            factor,
+            last,
+        )
     };
     largest_jump(&rate(left, true), &rate(right, false))
 }
@@ -173,13 +184,23 @@ pub(super) fn jump_v(left: &(UvBox, BezierPatch), right: &(UvBox, BezierPatch)) 
         let [m, n] = patch.degree;
         let row = |i: usize, j: usize| i * (n + 1) + j;
         let factor = n as f64 / span.size().y;
-        end_rates((0..=m).map(|i| if last { (row(i, n - 1), row(i, n)) } else { (row(i, 0), row(i, 1)) }), patch, factor, last)
+        end_rates(
+            (0..=m).map(|i| if last { (row(i, n - 1), row(i, n)) } else { (row(i, 0), row(i, 1)) }),
+            patch,
+            factor,
+            last,
+        )
     };
     largest_jump(&rate(left, true), &rate(right, false))
 }
 
 /// The derivative across an end of a patch at its control points; of a rational one in projected form.
-fn end_rates(pairs: impl Iterator<Item = (usize, usize)>, patch: &BezierPatch, factor: f64, last: bool) -> Vec<DVec3> {
+fn end_rates(
+    pairs: impl Iterator<Item = (usize, usize)>,
+    patch: &BezierPatch,
+    factor: f64,
+    last: bool,
+) -> Vec<DVec3> {
     pairs
         .map(|(a, b)| {
             let d = (patch.points[b] - patch.points[a]) * factor;

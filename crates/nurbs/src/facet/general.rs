@@ -198,7 +198,8 @@ fn weight_slope(frame: &Frame3, rate: DVec2, error: f64) -> f64 {
     if rate == DVec2::ZERO {
         return 0.0;
     }
-    let along = |i: usize| error * (rate.x * frame.d[i].x.abs() + rate.y * frame.d[i].y.abs()) / frame.length[i];
+    let along =
+        |i: usize| error * (rate.x * frame.d[i].x.abs() + rate.y * frame.d[i].y.abs()) / frame.length[i];
     (0..3).fold(f64::INFINITY, |best, i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         best.min((along(j) + along(k)) * frame.length[j] * frame.length[k] / frame.area2)

@@ -1,8 +1,18 @@
-//! Last resort for loops that truly cross: ear clipping that always finishes.
+//! Last resort for loops that truly cross: cut where they cross, then ear clipping that always finishes.
 //!
-//! The result is complete (every boundary segment once, every inner edge twice) and so keeps the mesh closed, but where loops
-//! cross some triangles are turned over. Holes are joined to the outer loop by their shortest bridge. Ears that are convex and
-//! empty go first; where there is none, the one that is least wrong.
+//! The result is complete (every boundary segment once, every inner edge twice) and so keeps the mesh closed. What a loop
+//! encloses clockwise is covered by triangles that are turned over, as the boundary says. Holes are joined to the outer loop
+//! by their shortest bridge. Where two segments p–p' and q–q' of the one polygon cross, it falls apart:
+//!
+//! ```text
+//!   … p        q' …        … p ──── q' …              p ╲ ╱ q'
+//!       ╲    ╱                                           ╳         what lies before and behind the crossing,
+//!         ╳         =                         +        ╱   ╲  +    what lies between, and four corners as large
+//!       ╱    ╲                                      q ╱     ╲ p'   as the segments are long
+//!   … q        p' …        … q ──── p' …
+//! ```
+//!
+//! Ears that are convex and empty go first; where there is none, the one that is least wrong.
 
 use super::orient;
 use chordal_nurbs::DVec2;
@@ -10,13 +20,74 @@ use chordal_nurbs::DVec2;
 /// Polygons larger than this are not worth the quadratic time.
 const MAX_POINTS: usize = 4000;
 
+/// Crossings that are cut; loops that cross more often are beyond sense.
+const MAX_CUTS: usize = 200;
+
 /// Triangulates loops given as in [`super::sweep`], the first being the outer one; `None` if they are too large.
 pub(crate) fn clip_ears(points: &[DVec2], loops: &[(u32, u32)]) -> Option<Vec<[u32; 3]>> {
     if points.len() > MAX_POINTS || loops.is_empty() {
         return None;
     }
-    let mut polygon = join_holes(points, loops);
-    let mut triangles = Vec::with_capacity(polygon.len());
+    let mut triangles = Vec::with_capacity(points.len());
+    let mut polygons = vec![join_holes(points, loops)];
+    let mut cuts = 0;
+    while let Some(polygon) = polygons.pop() {
+        if polygon.len() < 3 {
+            continue;
+        }
+        match crossing(points, &polygon).filter(|_| cuts < MAX_CUTS) {
+            Some((i, j)) => {
+                cuts += 1;
+                let next = (j + 1) % polygon.len();
+                triangles
+                    .extend(four_corners(points, [polygon[i], polygon[i + 1], polygon[j], polygon[next]]));
+                polygons.push(polygon[i + 1..=j].to_vec());
+                polygons.push(polygon[..=i].iter().chain(&polygon[j + 1..]).copied().collect());
+            }
+            None => clip(points, polygon, &mut triangles),
+        }
+    }
+    Some(triangles)
+}
+
+/// Two segments, each named by its first corner, that cross between their ends.
+fn crossing(points: &[DVec2], polygon: &[u32]) -> Option<(usize, usize)> {
+    let n = polygon.len();
+    let p = |i: usize| points[polygon[i % n] as usize];
+    let apart = |a: f64, b: f64| a > 0.0 && b < 0.0 || a < 0.0 && b > 0.0;
+    (0..n.saturating_sub(2)).find_map(|i| {
+        let (a, b) = (p(i), p(i + 1));
+        let (low, high) = (a.min(b), a.max(b));
+        let j = (i + 2..n).find(|&j| {
+            let (c, d) = (p(j), p(j + 1));
+            c.max(d).cmpge(low).all()
+                && c.min(d).cmple(high).all()
+                && apart(orient(a, b, c), orient(a, b, d))
+                && apart(orient(c, d, a), orient(c, d, b))
+        })?;
+        Some((i, j))
+    })
+}
+
+/// Two triangles with the boundary a b c d; the diagonal that covers less.
+fn four_corners(points: &[DVec2], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+    let size = |t: [u32; 3]| {
+        let [p, q, r] = t.map(|i| points[i as usize]);
+        orient(p, q, r).abs()
+    };
+    let (first, second) = ([[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]);
+    let total = |two: [[u32; 3]; 2]| size(two[0]) + size(two[1]);
+    if total(first) <= total(second) { first } else { second }
+}
+
+/// Clips a polygon that does not cross itself; triangles of one that runs clockwise are turned over.
+fn clip(points: &[DVec2], mut polygon: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
+    let p = |i: usize| points[polygon[i % polygon.len()] as usize];
+    let area: f64 = (0..polygon.len()).map(|i| (p(i) - p(0)).perp_dot(p(i + 1) - p(0))).sum();
+    if area < 0.0 {
+        polygon.reverse();
+    }
+    let start = triangles.len();
     while polygon.len() > 3 {
         let at = best_ear(points, &polygon);
         let n = polygon.len();
@@ -26,7 +97,9 @@ pub(crate) fn clip_ears(points: &[DVec2], loops: &[(u32, u32)]) -> Option<Vec<[u
     if let [a, b, c] = polygon[..] {
         triangles.push([a, b, c]);
     }
-    Some(triangles)
+    if area < 0.0 {
+        triangles[start..].iter_mut().for_each(|t| t.swap(1, 2));
+    }
 }
 
 /// One polygon that runs along all loops, with a bridge to each hole and back.
@@ -93,6 +166,34 @@ mod tests {
         }
         let open: Vec<_> = edges.iter().filter(|(_, n)| **n != 0).map(|(e, _)| *e).collect();
         assert_eq!(open, [(0, 1), (0, 4), (1, 2), (2, 3), (3, 4)]);
+    }
+
+    /// A square whose boundary runs on a little beyond its last corner, so that it ends in a small loop the other way.
+    #[test]
+    fn a_small_loop_beyond_a_crossing_stays_small() {
+        let p = [
+            (0., 0.),
+            (4., 0.),
+            (4., 4.),
+            (3.9, 4.),
+            (-0.1, 4.),
+            (-0.1, 3.9),
+            (0.1, 3.9),
+            (0.1, 4.1),
+            (0., 4.1),
+        ]
+        .map(DVec2::from);
+        let triangles = clip_ears(&p, &[(0, 9)]).expect("small");
+        let size = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| p[i as usize]);
+            0.5 * (b - a).perp_dot(c - a)
+        };
+        let covered: f64 = triangles.iter().map(|t| size(t).abs()).sum();
+        let signed: f64 = triangles.iter().map(size).sum();
+        let polygon: f64 = (0..9).map(|i| 0.5 * p[i].perp_dot(p[(i + 1) % 9])).sum();
+        assert!((signed - polygon).abs() < 1e-12, "{signed} {polygon}");
+        // The overlap of four corners reaches as far as the segments that cross.
+        assert!((15.5..18.0).contains(&covered), "{covered}");
     }
 
     #[test]
