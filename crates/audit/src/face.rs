@@ -39,6 +39,8 @@ pub(crate) struct FaceFindings {
     pub shared: Vec<(u64, bool)>,
     /// Triangles over such positions only, sorted corners.
     pub shared_triangles: Vec<[u32; 3]>,
+    /// Every triangle faces against the sense of the face, and no loop says so either.
+    pub turned_over: bool,
     pub problems: Vec<Problem>,
 }
 
@@ -178,7 +180,8 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     let halves = Halves::of(&mesh.triangles, mesh.corners.len());
     let bounds_of = boundary(context, face, mesh, &halves.single);
     check_triangles(context, &chart, &mut found, &mut log);
-    check_boundary(context, &chart, &bounds_of, &mut log);
+    found.turned_over = is_turned_over(&chart, &bounds_of, log.face);
+    check_boundary(context, &bounds_of, &mut log);
     gather_shared(context, mesh, &halves, &mut found);
     if found.duplicates > 0 {
         log.add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
@@ -373,12 +376,13 @@ fn is_degenerate(index: [u32; 3], p: [DVec3; 3], rounding: f64) -> bool {
     (p[1] - p[0]).cross(p[2] - p[0]).length() <= longest * rounding / 16.0
 }
 
-fn check_boundary(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary, log: &mut Log<'_>) {
-    // Files lie about the sense of a surface or about the direction of a loop, but hardly about both.
-    let against_sense = chart.turned != log.face.normal_reversed();
-    if against_sense && bounds.forward == 0 {
-        log.add(ProblemKind::FoldedTriangle, "is turned over as a whole".into());
-    }
+/// Files lie about the sense of a surface or about the direction of a loop, but hardly about both; unless the shell is
+/// inside out in the file, which only its volume tells.
+fn is_turned_over(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
+    chart.turned != face.normal_reversed() && bounds.forward == 0
+}
+
+fn check_boundary(context: &Context<'_>, bounds: &Boundary, log: &mut Log<'_>) {
     if bounds.missing > 0 {
         let edge = bounds.missing_edge.map_or(String::new(), |e| {
             format!(", the first of edge {}", context.part.edges[e as usize].source)

@@ -194,7 +194,12 @@ fn add_shells(context: &Context<'_>, faces: &[FaceFindings], audit: &mut PartAud
     }
     let found: Vec<_> =
         (0..part.shells.len()).into_par_iter().map(|s| audit_shell(context, faces, s, signs[s])).collect();
+    let mut vouched = vec![false; faces.len()];
     for mut shell in found {
+        let sign = signs[shell.audit.shell as usize];
+        if shell.audit.is_sound() && f64::from(sign) * shell.audit.volume > 0.0 {
+            part.shells[shell.audit.shell as usize].faces.iter().for_each(|f| vouched[f.index()] = true);
+        }
         if shell.audit.closed_in_file && shell.audit.complete {
             audit.open_edges += shell.audit.open_edges;
         }
@@ -203,5 +208,12 @@ fn add_shells(context: &Context<'_>, faces: &[FaceFindings], audit: &mut PartAud
         audit.duplicate_triangles += shell.duplicates;
         audit.problems.append(&mut shell.problems);
         audit.shells.push(shell.audit);
+    }
+    for (index, _) in faces.iter().enumerate().filter(|&(i, f)| f.turned_over && !vouched[i]) {
+        audit.problems.push(Problem {
+            subject: Subject::Face(index as u32),
+            kind: ProblemKind::FoldedTriangle,
+            sentence: format!("face {} is turned over as a whole", part.faces[index].source),
+        });
     }
 }

@@ -125,6 +125,13 @@ pub struct ShellAudit {
     pub volume: f64,
 }
 
+impl ShellAudit {
+    /// A closed shell without a hole or a contradiction: its volume means something.
+    pub fn is_sound(&self) -> bool {
+        self.watertight && self.complete && self.closed_in_file
+    }
+}
+
 /// One face.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaceAudit {

@@ -112,8 +112,7 @@ fn describe(context: &Context<'_>, sign: i8, found: &mut ShellFindings) {
     if found.duplicates > 0 {
         add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
     }
-    let sound = audit.watertight && audit.complete && audit.closed_in_file;
-    if sound && sign != 0 && audit.volume * f64::from(sign) < 0.0 {
+    if audit.is_sound() && sign != 0 && audit.volume * f64::from(sign) < 0.0 {
         add(ProblemKind::InsideOut, format!("is inside out: its volume is {:.6e}", audit.volume));
     }
 }

@@ -10,11 +10,6 @@ use std::fmt::Write;
 /// Faults of the mesher that are known and not yet mended: model, what the audit finds, and why.
 const KNOWN: &[(&str, &[ProblemKind], &str)] = &[
     (
-        "fillet_torus",
-        &[ProblemKind::FoldedTriangle, ProblemKind::DegenerateTriangle, ProblemKind::InconsistentEdges],
-        "ears cut from crossing loops leave triangles turned over",
-    ),
-    (
         "nested_loops",
         &[ProblemKind::FoldedTriangle, ProblemKind::NonManifoldEdges, ProblemKind::InconsistentEdges],
         "two outer loops in one face: the second lies inside a hole of the first",

@@ -6,7 +6,10 @@
 //! boundary is settled, each by the majority of its settled chords.
 
 use crate::chart::Key;
+use crate::edges::EdgeSamples;
 use crate::face::FaceResult;
+use chordal_brep::{BodyKind, Part, Shell};
+use chordal_nurbs::DVec3;
 
 /// A chord of an edge between two faces that run along it the same way, which is wrong, or opposite ways.
 struct Meeting {
@@ -75,10 +78,73 @@ fn meetings(faces: &[Option<Box<FaceResult>>]) -> Vec<Meeting> {
     pairs.map(|pair| Meeting { faces: [pair[0].1, pair[1].1], same: pair[0].2 == pair[1].2 }).collect()
 }
 
+/// Turns over the closed shells of solids whose volume has the wrong sign: the outer one's is positive, a void's negative.
+pub(crate) fn turn_inside_out(part: &Part, edges: &[EdgeSamples], faces: &mut [Option<Box<FaceResult>>]) {
+    let mut uses = vec![0u32; faces.len()];
+    part.shells.iter().flat_map(|s| &s.faces).for_each(|f| uses[f.index()] += 1);
+    for body in part.bodies.iter().filter(|b| b.kind == BodyKind::Solid) {
+        for (i, shell) in body.shells.iter().enumerate() {
+            let shell = &part.shells[shell.index()];
+            let sign = if i == 0 { 1.0 } else { -1.0 };
+            let own = shell.faces.iter().all(|f| uses[f.index()] == 1);
+            let wrong = |v: f64| sign * v < 0.0;
+            if own && volume(part, edges, shell, faces).is_some_and(wrong) && is_closed(shell, faces) {
+                for f in &shell.faces {
+                    faces[f.index()].iter_mut().for_each(|face| face.turn_over());
+                }
+            }
+        }
+    }
+}
+
+/// Six times the volume that a shell encloses; `None` where a face is missing, or where it is nothing but rounding.
+fn volume(
+    part: &Part,
+    edges: &[EdgeSamples],
+    shell: &Shell,
+    faces: &[Option<Box<FaceResult>>],
+) -> Option<f64> {
+    let mut origin = None;
+    let (mut sum, mut sum_of_sizes) = (0.0, 0.0);
+    for f in &shell.faces {
+        let face = faces[f.index()].as_ref()?;
+        let position = |v: u32| match face.keys[v as usize] {
+            Key::Vertex(v) => part.vertices[v as usize].point,
+            Key::Edge(e, i) => edges[e as usize].points[i as usize],
+            Key::Private(k) => face.private[k as usize],
+        };
+        for t in &face.triangles {
+            let [a, b, c]: [DVec3; 3] = t.map(position);
+            let origin = *origin.get_or_insert(a);
+            let six = (a - origin).dot((b - origin).cross(c - origin));
+            sum += six;
+            sum_of_sizes += six.abs();
+        }
+    }
+    (sum.abs() > 1e-9 * sum_of_sizes).then_some(sum)
+}
+
+/// True where every chord is run along once each way, or equally often each way.
+fn is_closed(shell: &Shell, faces: &[Option<Box<FaceResult>>]) -> bool {
+    let mut sides: Vec<([(Key, usize); 2], i32)> = Vec::new();
+    for f in &shell.faces {
+        let Some(face) = &faces[f.index()] else { return false };
+        let owned = |key: Key| (key, if matches!(key, Key::Private(_)) { f.index() } else { usize::MAX });
+        for t in &face.triangles {
+            for i in 0..3 {
+                let (a, b) = (owned(face.keys[t[i] as usize]), owned(face.keys[t[(i + 1) % 3] as usize]));
+                sides.push(([a.min(b), a.max(b)], if a < b { 1 } else { -1 }));
+            }
+        }
+    }
+    sides.sort_unstable();
+    sides.chunk_by(|a, b| a.0 == b.0).all(|group| group.iter().map(|s| s.1).sum::<i32>() == 0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use chordal_nurbs::DVec3;
+    use chordal_brep::{Body, FaceId, ShellId, Source, Vertex};
 
     /// The four faces of a tetrahedron, each one triangle.
     fn tetrahedron(turned: [bool; 4], doubtful: [bool; 4]) -> Vec<Option<Box<FaceResult>>> {
@@ -120,5 +186,38 @@ mod tests {
         settle_orientation(&mut faces);
         assert_eq!(contradictions(&faces), 3);
         assert_eq!(faces[0].as_ref().map(|f| f.triangles[0]), Some([0, 2, 1]));
+    }
+
+    #[test]
+    fn shells_of_solids_enclose_what_their_place_says() {
+        let vertex = |p: [f64; 3]| Vertex { point: p.into(), source: Source::default() };
+        let shell =
+            Shell { faces: (0..4usize).map(FaceId::from).collect(), closed: true, source: Source::default() };
+        let body = |shells: Vec<usize>| Body {
+            kind: BodyKind::Solid,
+            shells: shells.into_iter().map(ShellId::from).collect(),
+            name: String::new(),
+            color: None,
+            layer: None,
+            source: Source::default(),
+        };
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let empty = Shell { faces: Vec::new(), ..shell.clone() };
+        let mut part =
+            Part { vertices: corners.map(vertex).to_vec(), shells: vec![shell, empty], ..Part::default() };
+        for (shells, sign) in [(vec![0], 1.0), (vec![1, 0], -1.0)] {
+            part.bodies = vec![body(shells)];
+            for turned in [false, true] {
+                let mut faces = tetrahedron([turned; 4], [false; 4]);
+                turn_inside_out(&part, &[], &mut faces);
+                assert_eq!(volume(&part, &[], &part.shells[0], &faces), Some(sign));
+            }
+            // An open shell encloses nothing.
+            let mut faces = tetrahedron([true, true, true, false], [false; 4]);
+            let before = faces.iter().flatten().map(|f| f.triangles.clone()).collect::<Vec<_>>();
+            turn_inside_out(&part, &[], &mut faces);
+            let after = faces.iter().flatten().map(|f| f.triangles.clone()).collect::<Vec<_>>();
+            assert_eq!(before, after);
+        }
     }
 }

@@ -6,7 +6,7 @@ use crate::face::{FaceResult, Outcome, mesh_face};
 use crate::lower_bound::lower_bound;
 use crate::metric::Limits;
 use crate::options::{Cancel, Options};
-use crate::orient::settle_orientation;
+use crate::orient::{settle_orientation, turn_inside_out};
 use crate::report::{FaceReport, PartReport};
 use crate::stitch::stitch;
 use crate::surface::FaceSurface;
@@ -106,6 +106,7 @@ pub fn tessellate_part(
     job.describe(&edges, &outcomes, &mut report);
     let mut faces: Vec<Option<Box<FaceResult>>> = outcomes.into_iter().map(Result::ok).collect();
     settle_orientation(&mut faces);
+    turn_inside_out(part, &edges, &mut faces);
     let mesh = stitch(part, &edges, &faces);
     report.seconds.stitch = clock.elapsed().as_secs_f64();
     (mesh, report)

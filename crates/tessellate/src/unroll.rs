@@ -390,7 +390,7 @@ impl Unroll<'_, '_> {
             self.context.surface.periods[axis].is_some()
                 || self.context.surface.poles.iter().filter(|p| p.axis == axis).count() >= 2
         };
-        closed(0) && closed(1) && area(&largest.points) < 0.0
+        closed(0) && closed(1) && area(&largest.points) < 0.0 && !runs_along_seam(largest)
     }
 
     /// The whole domain of the surface.
@@ -525,6 +525,17 @@ impl Unroll<'_, '_> {
         }
         None
     }
+}
+
+/// True where a loop uses an edge twice: the face lies on both sides of it, so the loop encloses the face and no hole.
+fn runs_along_seam(open: &OpenLoop) -> bool {
+    let first = |p: &ChartPoint| match p.segment {
+        Segment::Edge { edge, chord: 0 } => Some(edge),
+        _ => None,
+    };
+    let mut edges: Vec<u32> = open.points.iter().filter_map(first).collect();
+    edges.sort_unstable();
+    edges.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 /// True where the segment p–q crosses the loop in any turn.
