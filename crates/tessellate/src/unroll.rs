@@ -296,26 +296,27 @@ impl Unroll<'_, '_> {
             return polygon;
         }
         let mut fine = Vec::with_capacity(2 * polygon.len());
+        let means = [0, 1].map(|axis| mean(&polygon, axis));
         for (i, point) in polygon.iter().enumerate() {
             let next = polygon[(i + 1) % polygon.len()].uv;
             if point.segment != Segment::Pole || next == point.uv {
                 fine.push(*point);
                 continue;
             }
-            let count = self.pole_points(point.uv, next);
+            let count = self.pole_points(point.uv, next, means.into());
             let at = |k: usize| point.uv.lerp(next, k as f64 / count as f64);
             fine.extend((0..count).map(|k| ChartPoint { uv: at(k), ..*point }));
         }
         fine
     }
 
-    /// As many as chords fit round the surface half way to the middle of its domain.
-    fn pole_points(&self, from: DVec2, to: DVec2) -> usize {
+    /// As many as chords fit round the surface half way to the middle of its domain, or of the face where that is unbounded.
+    fn pole_points(&self, from: DVec2, to: DVec2, inside: DVec2) -> usize {
         let along = usize::from((to - from).x == 0.0);
         let across = 1 - along;
         let domain = self.context.surface.domain();
         let mut middle = from.midpoint(to);
-        let inward = if domain.is_finite() { domain.center()[across] } else { middle[across] };
+        let inward = if domain.is_finite() { domain.center()[across] } else { inside[across] };
         middle[across] = 0.5 * (middle[across] + inward);
         let jet = self.context.surface.jet(middle);
         let rate = Sizing::new(&jet, self.limits).map_or(0.0, |s| s.metric.length(to - from));
