@@ -2,6 +2,7 @@
 
 use crate::edges::{CHARGED, EdgeAudit, audit_edges};
 use crate::face::{FaceFindings, audit_face};
+use crate::prove::AIM;
 use crate::report::{AuditOptions, Claim, PartAudit, Problem, ProblemKind, Subject};
 use crate::shell::audit_shell;
 use chordal_brep::{BodyKind, FaceGeometry, Part};
@@ -27,13 +28,13 @@ impl Context<'_> {
         CHARGED * self.options.tolerance + self.options.coordinate_rounding
     }
 
-    /// Bounds of a facet that are as good as any: the tolerance, and what is claimed of the face.
+    /// Bounds of a facet that are as good as any: a little under the tolerance, and what is claimed of the face.
     pub fn enough(&self, face: usize) -> (f64, f64) {
         let tolerance = self.options.tolerance;
         let claimed = self.claim(face).map_or(tolerance, |c| c.proven_error);
         let claimed =
             if claimed.is_finite() { claimed.clamp(0.01 * tolerance, tolerance) } else { tolerance };
-        (tolerance, claimed)
+        (AIM * tolerance, claimed)
     }
 
     fn claim(&self, face: usize) -> Option<Claim> {

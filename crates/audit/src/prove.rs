@@ -10,7 +10,7 @@ use chordal_nurbs::{Facet, Piece, Surface, SurfaceBounds, facet_bound};
 use rayon::prelude::*;
 
 /// Bounds are asked to be tight for errors of this share of the tolerance.
-const AIM: f64 = 0.995;
+pub(crate) const AIM: f64 = 0.995;
 
 pub(crate) fn prove(
     context: &Context<'_>,

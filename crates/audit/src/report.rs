@@ -120,6 +120,8 @@ pub struct ShellAudit {
     pub watertight: bool,
     pub open_edges: usize,
     pub inconsistent_edges: usize,
+    /// How many of them the file's own loops run along in one direction.
+    pub inconsistent_in_file: usize,
     pub non_manifold_edges: usize,
     /// Enclosed, in cubic units of the part; without meaning where the shell is open.
     pub volume: f64,

@@ -57,25 +57,40 @@ fn count_edges(context: &Context<'_>, faces: &[FaceFindings], index: usize, audi
         let balanced = 2 * back == group.len();
         match group.len() {
             1 => audit.open_edges += 1,
-            2 => audit.inconsistent_edges += usize::from(!balanced),
+            2 if balanced => {}
             n => {
-                audit.inconsistent_edges += usize::from(!balanced);
                 let uses = uses.get_or_insert_with(|| model_uses(context, index));
-                audit.non_manifold_edges += usize::from(uses.get(&group[0].0) != Some(&n));
+                let of_model = uses.get(&group[0].0).copied().unwrap_or_default();
+                audit.inconsistent_edges += usize::from(!balanced);
+                audit.inconsistent_in_file += usize::from(!balanced && of_model.there != of_model.back);
+                audit.non_manifold_edges += usize::from(n > 2 && of_model.there + of_model.back != n);
             }
         }
     }
 }
 
-/// How many times the faces of a shell use each chord.
-fn model_uses(context: &Context<'_>, index: usize) -> FxHashMap<u64, usize> {
-    let mut uses = FxHashMap::default();
+/// How many times the faces of a shell use a chord, in each direction.
+#[derive(Clone, Copy, Debug, Default)]
+struct Uses {
+    there: usize,
+    back: usize,
+}
+
+fn model_uses(context: &Context<'_>, index: usize) -> FxHashMap<u64, Uses> {
+    let mut uses: FxHashMap<u64, Uses> = FxHashMap::default();
     for face in &context.part.shells[index].faces {
-        for a_loop in &context.part.faces[face.index()].loops {
+        let face = &context.part.faces[face.index()];
+        for a_loop in &face.loops {
             let Loop::Edges { coedges, .. } = a_loop else { continue };
             for coedge in coedges {
                 for chord in context.mesh.edges[coedge.edge.index()].windows(2) {
-                    *uses.entry(half_key(chord[0], chord[1]).0).or_insert(0) += 1;
+                    let (key, turned) = half_key(chord[0], chord[1]);
+                    let of_chord = uses.entry(key).or_default();
+                    if turned ^ coedge.forward ^ face.flipped {
+                        of_chord.there += 1;
+                    } else {
+                        of_chord.back += 1;
+                    }
                 }
             }
         }
@@ -100,8 +115,16 @@ fn describe(context: &Context<'_>, sign: i8, found: &mut ShellFindings) {
     if audit.closed_in_file && audit.complete && audit.open_edges > 0 {
         add(ProblemKind::OpenShell, format!("is closed in the file and has {} open edges", audit.open_edges));
     }
-    if audit.inconsistent_edges > 0 {
-        add(ProblemKind::InconsistentEdges, format!("has {} inconsistent edges", audit.inconsistent_edges));
+    // An open shell may well be put together from faces that do not agree.
+    if audit.inconsistent_edges > if audit.closed_in_file { 0 } else { audit.inconsistent_in_file } {
+        let in_file = match audit.inconsistent_in_file {
+            0 => String::new(),
+            n => format!(", {n} of them in the file"),
+        };
+        add(
+            ProblemKind::InconsistentEdges,
+            format!("has {} inconsistent edges{in_file}", audit.inconsistent_edges),
+        );
     }
     if audit.non_manifold_edges > 0 {
         add(
