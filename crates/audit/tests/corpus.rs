@@ -4,7 +4,8 @@
 
 mod common;
 
-use chordal_audit::ProblemKind;
+use chordal_audit::{Problem, ProblemKind, Subject};
+use chordal_tessellate::PartReport;
 use std::fmt::Write;
 
 /// Faults of the mesher that are known and not yet mended: model, what the audit finds, and why.
@@ -21,6 +22,18 @@ const KNOWN: &[(&str, &[ProblemKind], &str)] = &[
     ),
     ("degree_mixed", &[ProblemKind::DegenerateTriangle], "three points of one straight parameter line"),
 ];
+
+/// The mesher itself says that a face did not keep the tolerance; this test is about what it does not say.
+fn is_owned_up(problem: &Problem, report: &PartReport, tolerance: f64) -> bool {
+    match (problem.kind, problem.subject) {
+        (ProblemKind::OverTolerance, Subject::Face(f)) => {
+            // Not even an infinite error, which is reported as none.
+            let claimed = report.faces[f as usize].proven_error;
+            claimed.is_nan() || claimed > tolerance
+        }
+        _ => false,
+    }
+}
 
 #[test]
 fn every_model_audits_clean() {
@@ -43,6 +56,10 @@ fn every_model_audits_clean() {
                 }
                 for problem in &audit.problems {
                     let line = format!("{name} part {index} at {share}: {:?}: {problem}", problem.kind);
+                    if is_owned_up(problem, &report, tolerance) {
+                        println!("owned up: {line}");
+                        continue;
+                    }
                     match KNOWN.iter().find(|known| known.0 == name && known.1.contains(&problem.kind)) {
                         Some(known) => println!("known ({}): {line}", known.2),
                         None => writeln!(faults, "{line}").unwrap(),
