@@ -109,6 +109,8 @@ pub(crate) struct FaceWork<'a, 's> {
     /// The surface at each chart vertex (not the mesh vertex, which may lie off it).
     pub xyz: Vec<DVec3>,
     pub normals: Vec<DVec3>,
+    /// Chart points at poles: the normal there depends on where one comes from, so no edge turns by it.
+    pub at_pole: Vec<bool>,
     /// Regularises metrics that vanish in some direction.
     floor: f64,
     shape: Shape,
@@ -141,6 +143,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             metrics: Vec::new(),
             xyz: Vec::new(),
             normals: Vec::new(),
+            at_pole: Vec::new(),
             floor: 0.0,
             shape,
             chart,
@@ -176,6 +179,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         self.metrics.push(metric.plus(first, self.floor));
         self.xyz.push(jet.p);
         self.normals.push(self.context.surface.normal(p_uv));
+        self.at_pole.push(self.context.surface.pole_at(jet.p, self.context.resolution).is_some());
     }
 
     /// At a pole the metric of a point a little further inside.
@@ -213,6 +217,11 @@ impl<'a, 's> FaceWork<'a, 's> {
             || Key::Private((self.chart.private.len() + vertex as usize - self.chart.points.len()) as u32),
             |p| p.key,
         )
+    }
+
+    /// The normal by which edges turn; zero at poles.
+    pub fn turning_normal(&self, vertex: u32) -> DVec3 {
+        if self.at_pole[vertex as usize] { DVec3::ZERO } else { self.normals[vertex as usize] }
     }
 
     /// The boundary segment from one chart vertex to another, where there is one.
@@ -266,6 +275,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             self.metrics.pop();
             self.xyz.pop();
             self.normals.pop();
+            self.at_pole.pop();
         }
         vertex
     }
@@ -290,9 +300,32 @@ impl<'a, 's> FaceWork<'a, 's> {
         })
     }
 
+    /// Gives each triangle at a pole a corner of its own there, seen from between its other two: that is where its normal
+    /// at the pole belongs.
+    fn turn_pole_corners(&mut self, triangles: &mut [[u32; 3]], keys: &mut Vec<Key>) {
+        if !self.at_pole.contains(&true) {
+            return;
+        }
+        for triangle in triangles {
+            let Some(i) = (0..3).find(|&i| self.at_pole[triangle[i] as usize]) else { continue };
+            let pole_corner = triangle[i] as usize;
+            let Some(pole) = self.context.surface.pole_at(self.xyz[pole_corner], self.context.resolution) else { continue };
+            let along = 1 - pole.axis;
+            let [a, b] = [1, 2].map(|k| self.mesh.points[triangle[(i + k) % 3] as usize]);
+            let mut uv = self.mesh.points[pole_corner];
+            uv[along] = 0.5 * (a[along] + b[along]);
+            triangle[i] = self.mesh.points.len() as u32;
+            keys.push(keys[pole_corner]);
+            self.mesh.points.push(uv);
+            self.normals.push(self.context.surface.normal(uv));
+        }
+    }
+
     /// Assembles the result.
-    fn finish(self, error: f64, bound: &'static str, options: &Options) -> FaceResult {
-        let keys: Vec<Key> = (0..self.mesh.points.len() as u32).map(|v| self.key(v)).collect();
+    fn finish(mut self, error: f64, bound: &'static str, options: &Options) -> FaceResult {
+        let gap = self.gap();
+        let curvature_bound = self.curvature_bound();
+        let mut keys: Vec<Key> = (0..self.mesh.points.len() as u32).map(|v| self.key(v)).collect();
         let mut private = self.chart.private.clone();
         private.extend_from_slice(&self.xyz[self.chart.points.len()..]);
         let reversed = self.context.face.normal_reversed() != self.chart.reversed;
@@ -306,7 +339,8 @@ impl<'a, 's> FaceWork<'a, 's> {
             .iter()
             .filter(keep)
             .map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
-        let triangles: Vec<[u32; 3]> = triangles.collect();
+        let mut triangles: Vec<[u32; 3]> = triangles.collect();
+        self.turn_pole_corners(&mut triangles, &mut keys);
         let mut proven_error = error;
         for point in &self.chart.points {
             if let Segment::Edge { edge, chord } = point.segment {
@@ -315,8 +349,6 @@ impl<'a, 's> FaceWork<'a, 's> {
         }
         let proven_error =
             if options.bound == Bound::Proven && error.is_finite() { proven_error } else { f64::NAN };
-        let gap = self.gap();
-        let curvature_bound = self.curvature_bound();
         let sign = if reversed { -1.0 } else { 1.0 };
         FaceResult {
             normals: self.normals.iter().map(|n| *n * sign).collect(),

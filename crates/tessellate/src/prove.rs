@@ -209,7 +209,7 @@ impl<'a> Prover<'a> {
         }
         let corners = work.mesh.triangles[t as usize];
         for i in 0..3 {
-            let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.normals[v as usize]);
+            let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.turning_normal(v));
             let length =
                 work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);
             if turns_too_far(n, m, self.limits.angle) || length > self.limits.length * (1.0 + 1e-9) {
@@ -313,8 +313,7 @@ impl<'a> Prover<'a> {
             // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
             let first = facet([apex, a, apex2], [outer[1][(j + 1) % 3], None, outer[0][(i + 2) % 3]]);
             let second = facet([apex, apex2, b], [outer[1][(j + 2) % 3], outer[0][(i + 1) % 3], None]);
-            let turn =
-                turns_too_far(work.normals[apex as usize], work.normals[apex2 as usize], self.limits.angle);
+            let turn = turns_too_far(work.turning_normal(apex), work.turning_normal(apex2), self.limits.angle);
             let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
             let tolerance = self.limits.tolerance;
             if !turn

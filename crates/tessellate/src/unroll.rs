@@ -374,7 +374,7 @@ impl Unroll<'_, '_> {
         candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let crosses = |&&(_, i, j, turns): &&(f64, usize, usize, f64)| {
             let (p, q) = (a.points[i].uv, b.points[j].uv + along_axis(axis, turns * period));
-            !holes.iter().any(|hole| crosses_loop(p, q, hole, axis, period))
+            !holes.iter().chain([a, b]).any(|hole| crosses_loop(p, q, hole, axis, period))
         };
         let best = candidates.iter().take(2000).find(crosses).unwrap_or(&candidates[0]);
         (best.1, best.2, best.3)
@@ -543,12 +543,18 @@ fn runs_along_seam(open: &OpenLoop) -> bool {
 fn crosses_loop(p: DVec2, q: DVec2, hole: &OpenLoop, axis: usize, period: f64) -> bool {
     let n = hole.points.len();
     let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a) > 0.0;
+    let tiny = 1e-12 * period;
+    let near = |x: DVec2, y: DVec2| x.abs_diff_eq(y, tiny);
     [-1.0, 0.0, 1.0].iter().any(|turn| {
         let by = along_axis(axis, turn * period);
         let base = along_axis(axis, period * ((p[axis] - hole.points[0].uv[axis]) / period).round()) + by;
         (0..n).any(|i| {
-            let (a, b) = (hole.points[i].uv + base, hole.points[(i + 1) % n].uv + base);
-            side(p, q, a) != side(p, q, b) && side(a, b, p) != side(a, b, q)
+            let (a, mut b) = (hole.points[i].uv + base, hole.points[(i + 1) % n].uv + base);
+            if i + 1 == n {
+                b += along_axis(axis, period * f64::from(hole.winding[axis]));
+            }
+            let touches = [a, b].iter().any(|&x| near(x, p) || near(x, q));
+            !touches && side(p, q, a) != side(p, q, b) && side(a, b, p) != side(a, b, q)
         })
     })
 }
