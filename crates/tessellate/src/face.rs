@@ -97,6 +97,9 @@ enum Attempt {
     Stuck,
 }
 
+/// How much the sideways bend of parameter lines counts against their bend along the normal when triangles are shaped.
+const SIDEWAYS: f64 = 0.3;
+
 /// A seam that proves too coarse is cut finer this often.
 const SEAM_TRIES: usize = 8;
 
@@ -176,7 +179,9 @@ impl<'a, 's> FaceWork<'a, 's> {
         };
         let first =
             Metric { uu: jet.du.length_squared(), uv: jet.du.dot(jet.dv), vv: jet.dv.length_squared() };
-        self.metrics.push(metric.plus(first, self.floor));
+        let sideways = Metric::sideways(&jet);
+        let per_chord = SIDEWAYS / (8.0 * self.limits.tolerance);
+        self.metrics.push(metric.plus(first, self.floor).plus(sideways, per_chord));
         self.xyz.push(jet.p);
         self.normals.push(self.context.surface.normal(p_uv));
         self.at_pole.push(self.context.surface.pole_at(jet.p, self.context.resolution).is_some());
@@ -309,7 +314,10 @@ impl<'a, 's> FaceWork<'a, 's> {
         for triangle in triangles {
             let Some(i) = (0..3).find(|&i| self.at_pole[triangle[i] as usize]) else { continue };
             let pole_corner = triangle[i] as usize;
-            let Some(pole) = self.context.surface.pole_at(self.xyz[pole_corner], self.context.resolution) else { continue };
+            let Some(pole) = self.context.surface.pole_at(self.xyz[pole_corner], self.context.resolution)
+            else {
+                continue;
+            };
             let along = 1 - pole.axis;
             let [a, b] = [1, 2].map(|k| self.mesh.points[triangle[(i + k) % 3] as usize]);
             let mut uv = self.mesh.points[pole_corner];

@@ -1,6 +1,6 @@
 //! The sizing metric: lengths in it are counted in allowed chords, so an edge of length 1 is as long as it may be.
 
-use chordal_nurbs::{DVec2, SurfaceJet};
+use chordal_nurbs::{DVec2, DVec3, SurfaceJet};
 
 /// A symmetric positive semi-definite form on parameter space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,6 +29,15 @@ impl Metric {
             uv: self.uv + other.uv * factor,
             vv: self.vv + other.vv * factor,
         }
+    }
+
+    /// How far the lines of each parameter bend sideways in the surface, per square of the parameter.
+    ///
+    /// A long step along such a line cuts across the surface beside it, which the normal curvature does not see.
+    pub fn sideways(jet: &SurfaceJet) -> Metric {
+        let n = jet.du.cross(jet.dv).normalize_or_zero();
+        let bend = |d: DVec3, second: DVec3| second.dot(n.cross(d.normalize_or_zero())).abs();
+        Metric { uu: bend(jet.du, jet.duu), uv: 0.0, vv: bend(jet.dv, jet.dvv) }
     }
 
     pub fn mean<const N: usize>(metrics: [Metric; N]) -> Metric {

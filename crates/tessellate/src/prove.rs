@@ -5,7 +5,7 @@ use crate::face::FaceWork;
 use crate::metric::{Limits, Metric};
 use crate::options::{Bound, Cancel, Options};
 use crate::triangulate::{Location, NONE};
-use chordal_nurbs::{DVec2, Facet, FacetBound, Piece, Surface, SurfaceBounds, facet_bound};
+use chordal_nurbs::{DVec2, DVec3, Facet, FacetBound, Piece, Surface, SurfaceBounds, facet_bound};
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -201,11 +201,13 @@ impl<'a> Prover<'a> {
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
-        if let Some(chord) = (0..3).find(|&i| facet.sag[i].is_some())
-            && self.is_folded(work, t, &facet)
-        {
-            // The chord leaves the face by more than the facet is high.
-            return (f64::INFINITY, Fault::Edge(chord));
+        if let Some(chord) = (0..3).find(|&i| facet.sag[i].is_some()) {
+            let normals = work.mesh.triangles[t as usize].map(|v| work.normals[v as usize]);
+            if let Some(height) = self.folded_height(facet.xyz, normals) {
+                // A chord that leaves the face by about as much as the facet is high must be finer; else the facet reaches too far.
+                let coarse = facet.sag[chord].is_some_and(|sag| sag > 0.25 * height);
+                return (f64::INFINITY, if coarse { Fault::Edge(chord) } else { Fault::Inside(None) });
+            }
         }
         let corners = work.mesh.triangles[t as usize];
         for i in 0..3 {
@@ -220,19 +222,19 @@ impl<'a> Prover<'a> {
         (bound.error, Fault::None)
     }
 
-    /// True where the facet faces away from the surface at its corners: it lies outside the face, doubled back.
-    fn is_folded(&self, work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> bool {
-        let [a, b, c] = facet.xyz;
+    /// The height of a facet that faces away from the surface at its corners: it lies outside the face, doubled back.
+    fn folded_height(&self, xyz: [DVec3; 3], normals: [DVec3; 3]) -> Option<f64> {
+        let [a, b, c] = xyz;
         let cross = (b - a).cross(c - a);
         let longest =
             (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt();
         // Facets lower than this can do no harm whichever way they face.
         let height = cross.length() / longest.max(f64::MIN_POSITIVE);
-        let normals = work.mesh.triangles[t as usize].map(|v| work.normals[v as usize]);
         let [n, m, k] = normals;
         // Where the normals themselves disagree, one facet cannot tell.
         let agree = n.dot(m).min(m.dot(k)).min(k.dot(n)) > 0.3;
-        agree && height > FOLD_HEIGHT * self.limits.tolerance && (n + m + k).dot(cross) < 0.0
+        (agree && height > FOLD_HEIGHT * self.limits.tolerance && (n + m + k).dot(cross) < 0.0)
+            .then_some(height)
     }
 
     fn boundary_segment(&self, work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<Segment> {
@@ -242,7 +244,8 @@ impl<'a> Prover<'a> {
 
     /// Flips an edge or inserts a point; false where neither is possible.
     fn mend(&mut self, work: &mut FaceWork<'_, '_>, t: u32, error: f64, edge: Option<usize>) -> bool {
-        if edge.is_none() && error < FLIP_HELPS * self.limits.tolerance && self.flip_helps(work, t) {
+        let flips = error < FLIP_HELPS * self.limits.tolerance || error.is_infinite();
+        if edge.is_none() && flips && self.flip_helps(work, t) {
             return true;
         }
         let corners = work.mesh.corners(t);
@@ -313,11 +316,17 @@ impl<'a> Prover<'a> {
             // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
             let first = facet([apex, a, apex2], [outer[1][(j + 1) % 3], None, outer[0][(i + 2) % 3]]);
             let second = facet([apex, apex2, b], [outer[1][(j + 2) % 3], outer[0][(i + 1) % 3], None]);
-            let turn = turns_too_far(work.turning_normal(apex), work.turning_normal(apex2), self.limits.angle);
+            let turn =
+                turns_too_far(work.turning_normal(apex), work.turning_normal(apex2), self.limits.angle);
             let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
             let tolerance = self.limits.tolerance;
+            let folds = |corners: [u32; 3], xyz| {
+                self.folded_height(xyz, corners.map(|v| work.normals[v as usize])).is_some()
+            };
+            let folded = folds([apex, a, apex2], first.xyz) || folds([apex, apex2, b], second.xyz);
             if !turn
                 && !long
+                && !folded
                 && self.bound(work, &first).error <= tolerance
                 && self.bound(work, &second).error <= tolerance
             {
@@ -339,10 +348,10 @@ impl<'a> Prover<'a> {
     }
 }
 
-fn turns_too_far(n: chordal_nurbs::DVec3, m: chordal_nurbs::DVec3, limit: f64) -> bool {
+fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
     limit < std::f64::consts::PI
-        && n != chordal_nurbs::DVec3::ZERO
-        && m != chordal_nurbs::DVec3::ZERO
+        && n != DVec3::ZERO
+        && m != DVec3::ZERO
         && n.dot(m) < (limit * (1.0 + 1e-9)).cos() - 1e-12
 }
 

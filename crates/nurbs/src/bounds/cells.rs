@@ -72,8 +72,9 @@ impl CellTable {
                 self.patch_pieces(i * (self.spans_v.len() - 1) + j, b, out);
             }
         }
-        let largest =
-            |jumps: &[f64], from: usize, to: usize| jumps[(from + 1).min(to)..to].iter().fold(0.0f64, |m, &j| m.max(j));
+        let largest = |jumps: &[f64], from: usize, to: usize| {
+            jumps[(from + 1).min(to)..to].iter().fold(0.0f64, |m, &j| m.max(j))
+        };
         DVec2::new(largest(&self.jumps_u, i0, i1), largest(&self.jumps_v, j0, j1))
     }
 
@@ -115,7 +116,8 @@ fn covered(span: Range, range: Range, level: usize) -> std::ops::Range<usize> {
     let scale = count as f64 / span.length();
     let slack = 1e-7 * range.length();
     let from = ((range.start + slack - span.start) * scale).floor().clamp(0.0, (count - 1) as f64) as usize;
-    let to = ((range.end - slack - span.start) * scale).ceil().clamp((from + 1) as f64, count as f64) as usize;
+    let to =
+        ((range.end - slack - span.start) * scale).ceil().clamp((from + 1) as f64, count as f64) as usize;
     from..to
 }
 
