@@ -48,6 +48,8 @@ enum Fault {
     Edge(usize),
     /// Too far from the surface, or turning too much across the edge opposite the corner.
     Inside(Option<usize>),
+    /// Turned over where it meets the boundary; its longest inner edge is opposite this corner.
+    Fold(Option<usize>),
 }
 
 impl<'a> Prover<'a> {
@@ -93,7 +95,7 @@ impl<'a> Prover<'a> {
                     Some(Segment::Edge { edge, chord }) => requests.push((edge, chord)),
                     _ => return Ok(Verdict::FinerSeam),
                 },
-                Fault::Inside(edge) => {
+                Fault::Inside(edge) | Fault::Fold(edge) => {
                     if !requests.is_empty() {
                         // The face runs again with finer edges: no need to fill it now.
                         continue;
@@ -201,13 +203,17 @@ impl<'a> Prover<'a> {
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
-        if let Some(chord) = (0..3).find(|&i| facet.sag[i].is_some())
-            && self.is_folded(work, t, &facet)
-        {
-            // The chord leaves the face by more than the facet is high.
-            return (f64::INFINITY, Fault::Edge(chord));
-        }
         let corners = work.mesh.triangles[t as usize];
+        // Folds inside of the face only cover it more than once; at its boundary they reach beyond it.
+        let at_boundary = corners.iter().any(|&v| (v as usize) < work.chart.points.len());
+        if at_boundary && self.is_folded(work, corners, &facet) {
+            // The chord leaves the face by more than the facet is high, or an inner edge leaves it between its ends.
+            let chord = (0..3).find(|&i| facet.sag[i].is_some());
+            return (
+                f64::INFINITY,
+                chord.map_or_else(|| Fault::Fold(longest_inner(work, t, &facet)), Fault::Edge),
+            );
+        }
         for i in 0..3 {
             let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.turning_normal(v));
             let length =
@@ -221,15 +227,14 @@ impl<'a> Prover<'a> {
     }
 
     /// True where the facet faces away from the surface at its corners: it lies outside the face, doubled back.
-    fn is_folded(&self, work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> bool {
+    fn is_folded(&self, work: &FaceWork<'_, '_>, corners: [u32; 3], facet: &Facet) -> bool {
         let [a, b, c] = facet.xyz;
         let cross = (b - a).cross(c - a);
         let longest =
             (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt();
         // Facets lower than this can do no harm whichever way they face.
         let height = cross.length() / longest.max(f64::MIN_POSITIVE);
-        let normals = work.mesh.triangles[t as usize].map(|v| work.normals[v as usize]);
-        let [n, m, k] = normals;
+        let [n, m, k] = corners.map(|v| work.normals[v as usize]);
         // Where the normals themselves disagree, one facet cannot tell.
         let agree = n.dot(m).min(m.dot(k)).min(k.dot(n)) > 0.3;
         agree && height > FOLD_HEIGHT * self.limits.tolerance && (n + m + k).dot(cross) < 0.0
@@ -240,7 +245,7 @@ impl<'a> Prover<'a> {
         work.segment(corners[(i + 1) % 3], corners[(i + 2) % 3])
     }
 
-    /// Flips an edge or inserts a point; false where neither is possible.
+    /// Inserts a point; false where that is impossible.
     fn mend(&mut self, work: &mut FaceWork<'_, '_>, t: u32, error: f64, edge: Option<usize>) -> bool {
         if edge.is_none() && error < FLIP_HELPS * self.limits.tolerance && self.flip_helps(work, t) {
             return true;
@@ -290,7 +295,7 @@ impl<'a> Prover<'a> {
         None
     }
 
-    /// Flips an inner edge of `t` where both new triangles are within the tolerance.
+    /// Flips an inner edge of `t` where both new triangles are within the tolerance and not folded.
     fn flip_helps(&mut self, work: &mut FaceWork<'_, '_>, t: u32) -> bool {
         for i in 0..3 {
             let other = work.mesh.neighbors[t as usize][i];
@@ -316,8 +321,11 @@ impl<'a> Prover<'a> {
             let turn = turns_too_far(work.turning_normal(apex), work.turning_normal(apex2), self.limits.angle);
             let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
             let tolerance = self.limits.tolerance;
+            let folded = self.is_folded(work, [apex, a, apex2], &first)
+                || self.is_folded(work, [apex, apex2, b], &second);
             if !turn
                 && !long
+                && !folded
                 && self.bound(work, &first).error <= tolerance
                 && self.bound(work, &second).error <= tolerance
             {
@@ -337,6 +345,13 @@ impl<'a> Prover<'a> {
             _ => None,
         })
     }
+}
+
+/// The longest edge in space that is no boundary, by the corner opposite to it.
+fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize> {
+    let inner = (0..3).filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
+    let length = |i: usize| facet.xyz[(i + 1) % 3].distance_squared(facet.xyz[(i + 2) % 3]);
+    inner.max_by(|&i, &j| length(i).total_cmp(&length(j)))
 }
 
 fn turns_too_far(n: chordal_nurbs::DVec3, m: chordal_nurbs::DVec3, limit: f64) -> bool {
