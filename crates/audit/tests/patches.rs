@@ -290,7 +290,7 @@ impl Grid {
         let on = |k: usize, side: usize| match side {
             0 => k / (CELLS + 1) == 0,
             1 => k / (CELLS + 1) == CELLS,
-            2 => k % (CELLS + 1) == 0,
+            2 => k.is_multiple_of(CELLS + 1),
             _ => k % (CELLS + 1) == CELLS,
         };
         (0..4).any(|side| on(a, side) && on(b, side)).then(|| {

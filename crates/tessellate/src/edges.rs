@@ -104,14 +104,12 @@ impl EdgeSamples {
     pub fn split(&mut self, edge: &Edge, chords: &[u32]) {
         let Some(curve) = edge.curve.as_deref() else { return };
         let ends = [self.points[0], self.points[self.points.len() - 1]];
-        let mut k = 0;
         let mut t = vec![self.t[0]];
-        for pair in self.t.windows(2) {
-            if chords.contains(&k) {
+        for (k, pair) in self.t.windows(2).enumerate() {
+            if chords.contains(&(k as u32)) {
                 t.push(0.5 * (pair[0] + pair[1]));
             }
             t.push(pair[1]);
-            k += 1;
         }
         self.t = t;
         self.sag = self.t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();

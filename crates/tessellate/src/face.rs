@@ -97,6 +97,9 @@ enum Attempt {
     Stuck,
 }
 
+/// Corners at poles are taken this share of their triangle off the pole.
+const BESIDE_POLE: f64 = 1e-9;
+
 /// How much the sideways bend of parameter lines counts against their bend along the normal when triangles are shaped.
 const SIDEWAYS: f64 = 0.3;
 
@@ -322,6 +325,8 @@ impl<'a, 's> FaceWork<'a, 's> {
             let [a, b] = [1, 2].map(|k| self.mesh.points[triangle[(i + k) % 3] as usize]);
             let mut uv = self.mesh.points[pole_corner];
             uv[along] = 0.5 * (a[along] + b[along]);
+            // Just inside: on the pole itself rounding decides which side the normal is taken from.
+            uv[pole.axis] += BESIDE_POLE * (a.midpoint(b)[pole.axis] - uv[pole.axis]);
             triangle[i] = self.mesh.points.len() as u32;
             keys.push(keys[pole_corner]);
             self.mesh.points.push(uv);

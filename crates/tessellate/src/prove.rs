@@ -81,7 +81,7 @@ impl<'a> Prover<'a> {
                 continue;
             }
             steps += 1;
-            if steps % 256 == 0 {
+            if steps.is_multiple_of(256) {
                 self.check_budget(work)?;
             }
             let (error, fault) = self.judge(work, t);

@@ -76,8 +76,7 @@ pub fn tessellate_part(
     let mut report = PartReport::default();
     let clock = Instant::now();
     let resolution = (SAME_POINT * options.tolerance).min(SAME_POINT_OF_PART * diagonal(part));
-    let exact: Vec<Option<std::borrow::Cow<'_, Surface>>> =
-        part.faces.iter().map(|face| exact_surface(face)).collect();
+    let exact: Vec<Option<std::borrow::Cow<'_, Surface>>> = part.faces.iter().map(exact_surface).collect();
     let surfaces = exact.iter().map(|s| s.as_deref().map(|s| FaceSurface::new(s, resolution))).collect();
     let job = Job {
         part,
