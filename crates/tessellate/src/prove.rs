@@ -48,6 +48,8 @@ enum Fault {
     Edge(usize),
     /// Too far from the surface, or turning too much across the edge opposite the corner.
     Inside(Option<usize>),
+    /// Turned over where it meets the boundary; its longest inner edge lies opposite the corner.
+    Fold(Option<usize>),
 }
 
 impl<'a> Prover<'a> {
@@ -93,7 +95,7 @@ impl<'a> Prover<'a> {
                     Some(Segment::Edge { edge, chord }) => requests.push((edge, chord)),
                     _ => return Ok(Verdict::FinerSeam),
                 },
-                Fault::Inside(edge) => {
+                Fault::Inside(edge) | Fault::Fold(edge) => {
                     if !requests.is_empty() {
                         // The face runs again with finer edges: no need to fill it now.
                         continue;
@@ -108,7 +110,8 @@ impl<'a> Prover<'a> {
                     if work.mesh.triangles.len() > self.options.face_triangles {
                         return Err(format!("it needs more than {} triangles", work.mesh.triangles.len()));
                     }
-                    if !self.mend(work, t, error, edge) {
+                    let flipped = matches!(fault, Fault::Fold(_)) && self.flip_helps(work, t);
+                    if !flipped && !self.mend(work, t, error, edge) {
                         match self.coarse_boundary(work, t) {
                             Some(_) if self.accept => continue,
                             Some(chord) => requests.push(chord),
@@ -201,15 +204,16 @@ impl<'a> Prover<'a> {
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
-        if let Some(chord) = (0..3).find(|&i| facet.sag[i].is_some()) {
-            let normals = work.mesh.triangles[t as usize].map(|v| work.normals[v as usize]);
-            if let Some(height) = self.folded_height(facet.xyz, normals) {
-                // A chord that leaves the face by about as much as the facet is high must be finer; else the facet reaches too far.
-                let coarse = facet.sag[chord].is_some_and(|sag| sag > 0.25 * height);
-                return (f64::INFINITY, if coarse { Fault::Edge(chord) } else { Fault::Inside(None) });
-            }
-        }
         let corners = work.mesh.triangles[t as usize];
+        // Folds inside the face only cover it more than once; where they meet its boundary they may reach beyond it.
+        if corners.iter().any(|&v| (v as usize) < work.chart.points.len())
+            && let Some(height) = self.folded_height(facet.xyz, corners.map(|v| work.normals[v as usize]))
+        {
+            // A chord that leaves the face by about as much as the facet is high must be finer; else an inner edge leaves it.
+            let coarse = (0..3).find(|&i| facet.sag[i].is_some_and(|sag| sag > 0.25 * height));
+            let inner = || Fault::Fold(longest_inner(work, t, &facet));
+            return (f64::INFINITY, coarse.map_or_else(inner, Fault::Edge));
+        }
         for i in 0..3 {
             let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.turning_normal(v));
             let length =
@@ -244,8 +248,7 @@ impl<'a> Prover<'a> {
 
     /// Flips an edge or inserts a point; false where neither is possible.
     fn mend(&mut self, work: &mut FaceWork<'_, '_>, t: u32, error: f64, edge: Option<usize>) -> bool {
-        let flips = error < FLIP_HELPS * self.limits.tolerance || error.is_infinite();
-        if edge.is_none() && flips && self.flip_helps(work, t) {
+        if edge.is_none() && error < FLIP_HELPS * self.limits.tolerance && self.flip_helps(work, t) {
             return true;
         }
         let corners = work.mesh.corners(t);
@@ -346,6 +349,13 @@ impl<'a> Prover<'a> {
             _ => None,
         })
     }
+}
+
+/// The longest edge in space that is no boundary, by the corner opposite to it.
+fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize> {
+    let inner = (0..3).filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
+    let length = |i: usize| facet.xyz[(i + 1) % 3].distance_squared(facet.xyz[(i + 2) % 3]);
+    inner.max_by(|&i, &j| length(i).total_cmp(&length(j)))
 }
 
 fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
