@@ -309,10 +309,11 @@ impl<'a, 's> FaceWork<'a, 's> {
     }
 
     /// Gives each triangle at a pole a corner of its own there, seen from between its other two: that is where its normal
-    /// at the pole belongs.
-    fn turn_pole_corners(&mut self, triangles: &mut [[u32; 3]], keys: &mut Vec<Key>) {
+    /// at the pole belongs. Returns how far these corners lie off the pole's vertex.
+    fn turn_pole_corners(&mut self, triangles: &mut [[u32; 3]], keys: &mut Vec<Key>) -> f64 {
+        let mut gap = 0.0f64;
         if !self.at_pole.contains(&true) {
-            return;
+            return gap;
         }
         for triangle in triangles {
             let Some(i) = (0..3).find(|&i| self.at_pole[triangle[i] as usize]) else { continue };
@@ -331,7 +332,9 @@ impl<'a, 's> FaceWork<'a, 's> {
             keys.push(keys[pole_corner]);
             self.mesh.points.push(uv);
             self.normals.push(self.context.surface.normal(uv));
+            gap = gap.max(self.context.surface.point(uv).distance(self.position(keys[pole_corner])));
         }
+        gap
     }
 
     /// Assembles the result.
@@ -353,7 +356,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             .filter(keep)
             .map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
         let mut triangles: Vec<[u32; 3]> = triangles.collect();
-        self.turn_pole_corners(&mut triangles, &mut keys);
+        let gap = gap.max(self.turn_pole_corners(&mut triangles, &mut keys));
         let mut proven_error = error;
         for point in &self.chart.points {
             if let Segment::Edge { edge, chord } = point.segment {
