@@ -13,6 +13,9 @@ use chordal_nurbs::{DVec2, DVec3, Pole, Surface, SurfaceInverter, UvBox, Wrap};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
+/// Edges shorter than this share of the tolerance may turn by any angle: at singular points some always do.
+const TURN_LENGTH: f64 = 0.1;
+
 /// Triangles or corners handled by one task.
 pub(crate) const CHUNK: usize = 4096;
 
@@ -329,7 +332,8 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
             let against = c.iter().all(|c| c.normal.dot(normal) < 0.0);
             sum.folded += usize::from(if chart.turned { turn >= 0.0 } else { turn <= 0.0 });
             sum.against += usize::from(against);
-            for i in 0..3 {
+            let sides = [p.distance(q), q.distance(r), r.distance(p)];
+            for i in (0..3).filter(|&i| sides[i] > TURN_LENGTH * context.options.tolerance) {
                 let (n, m) = (c[i].normal, c[(i + 1) % 3].normal);
                 if n != DVec3::ZERO && m != DVec3::ZERO {
                     sum.least_cosine = sum.least_cosine.min(n.dot(m));

@@ -20,7 +20,8 @@ pub enum Bound {
 pub struct Options {
     /// Largest distance between mesh and surface, in the part's units.
     pub tolerance: f64,
-    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians.
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians. Edges shorter than a
+    /// tenth of the tolerance are exempt: beside a singular point no edge is short enough.
     pub angle: Option<f64>,
     /// Longest mesh edge, in the part's units.
     pub max_edge: Option<f64>,

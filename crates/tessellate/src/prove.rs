@@ -38,6 +38,10 @@ pub(crate) struct Prover<'a> {
 /// A flip is worth trying for facets whose error is at most this many tolerances.
 const FLIP_HELPS: f64 = 3.0;
 
+/// Edges shorter than this share of the tolerance may turn by any angle: at singular points, where the surface turns within no
+/// distance at all, there would be no end to refining.
+const TURN_LENGTH: f64 = 0.1;
+
 /// Facets lower than this share of the tolerance may face any way.
 const FOLD_HEIGHT: f64 = 0.05;
 
@@ -218,7 +222,8 @@ impl<'a> Prover<'a> {
             let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.turning_normal(v));
             let length =
                 work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);
-            if turns_too_far(n, m, self.limits.angle) || length > self.limits.length * (1.0 + 1e-9) {
+            let turns = length > TURN_LENGTH * tolerance && turns_too_far(n, m, self.limits.angle);
+            if turns || length > self.limits.length * (1.0 + 1e-9) {
                 let fault = if boundary[i] { Fault::Edge(i) } else { Fault::Inside(Some(i)) };
                 return (bound.error, fault);
             }
