@@ -48,7 +48,7 @@ impl Chart {
         let outer = if !winding.is_empty() {
             Some(unroll.cut(winding, &plain)?)
         } else if unroll.needs_natural_boundary(&plain) {
-            Some(unroll.natural_boundary()?)
+            Some(unroll.natural_boundary(&plain)?)
         } else {
             None
         };
@@ -395,12 +395,18 @@ impl Unroll<'_, '_> {
     }
 
     /// The whole domain of the surface.
-    fn natural_boundary(&mut self) -> Result<Vec<ChartPoint>, String> {
+    fn natural_boundary(&mut self, holes: &[OpenLoop]) -> Result<Vec<ChartPoint>, String> {
         let domain = self.context.surface.domain();
         if !domain.is_finite() {
             return Err("it has no boundary and its surface is unbounded".into());
         }
-        let UvBox { min, max } = domain;
+        let UvBox { mut min, mut max } = domain;
+        for axis in 0..2 {
+            if let Some(period) = self.context.surface.periods[axis] {
+                min[axis] = seam_beside(holes, axis, period, min[axis]);
+                max[axis] = min[axis] + period;
+            }
+        }
         let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
         let surface = self.context.surface;
         let is_pole = |a: DVec2, b: DVec2| {
@@ -537,6 +543,29 @@ fn runs_along_seam(open: &OpenLoop) -> bool {
     let mut edges: Vec<u32> = open.points.iter().filter_map(first).collect();
     edges.sort_unstable();
     edges.windows(2).any(|pair| pair[0] == pair[1])
+}
+
+/// Where to cut a closed direction so that the seam keeps away from all holes: at `start` if none is near.
+fn seam_beside(holes: &[OpenLoop], axis: usize, period: f64, start: f64) -> f64 {
+    const PLACES: usize = 64;
+    if holes.is_empty() {
+        return start;
+    }
+    let distance = |place: f64| {
+        holes.iter().fold(period, |nearest, hole| {
+            let low = hole.points.iter().fold(f64::INFINITY, |m, p| m.min(p.uv[axis]));
+            let high = hole.points.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.uv[axis]));
+            let behind = (place - low).rem_euclid(period);
+            if behind <= high - low { 0.0 } else { nearest.min(behind - (high - low)).min(period - behind) }
+        })
+    };
+    let places = (0..PLACES).map(|k| start + period * k as f64 / PLACES as f64);
+    places
+        .fold((start, distance(start)), |best, place| {
+            let d = distance(place);
+            if d > best.1 { (place, d) } else { best }
+        })
+        .0
 }
 
 /// True where the segment p–q crosses the loop in any turn.
