@@ -103,6 +103,7 @@ const KNOWN: &[(&str, &str)] = &[
     ("spline_cyclic", "where the free seam runs is decided by rounding"),
     ("stacked_points", "ties between rows of points are decided by rounding"),
     ("torus_apple", "ties between rows of points are decided by rounding"),
+    ("thread", "ties between flips are decided by rounding"),
     ("weight_negative", "nothing is proven: samples decide"),
     ("weight_zero", "nothing is proven: samples decide"),
     ("nested_loops", "two outer loops in one face: the second lies inside a hole of the first"),

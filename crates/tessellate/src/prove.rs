@@ -260,7 +260,7 @@ impl<'a> Prover<'a> {
         let m = Metric::mean(work.mesh.triangles[t as usize].map(|v| work.metrics[v as usize]));
         let longest = edge.or_else(|| {
             let length = |i: usize| m.length(corners[(i + 2) % 3] - corners[(i + 1) % 3]);
-            (0..3).max_by(|&a, &b| length(a).total_cmp(&length(b)))
+            clearly_longest(0..3, length)
         });
         let center = (corners[0] + corners[1] + corners[2]) / 3.0;
         let on_crease = self.crease_point(corners);
@@ -360,7 +360,12 @@ impl<'a> Prover<'a> {
 fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize> {
     let inner = (0..3).filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
     let length = |i: usize| facet.xyz[(i + 1) % 3].distance_squared(facet.xyz[(i + 2) % 3]);
-    inner.max_by(|&i, &j| length(i).total_cmp(&length(j)))
+    clearly_longest(inner, length)
+}
+
+/// The longest; of those that only rounding tells apart the first, so that the same part elsewhere gets the same mesh.
+fn clearly_longest(of: impl Iterator<Item = usize>, length: impl Fn(usize) -> f64) -> Option<usize> {
+    of.reduce(|best, i| if length(i) > length(best) * (1.0 + 1e-9) { i } else { best })
 }
 
 fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
