@@ -34,7 +34,6 @@ pub mod report;
 mod resolve;
 mod scene;
 mod tight_box;
-mod triangle_tree;
 mod whole_file;
 
 pub use against::{AgainstReport, WorstFace};

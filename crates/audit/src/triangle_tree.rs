@@ -7,7 +7,7 @@ const LEAF: usize = 4;
 
 /// Triangles prepared for many questions.
 #[derive(Debug)]
-pub(crate) struct TriangleTree {
+pub struct TriangleTree {
     triangles: Vec<[DVec3; 3]>,
     nodes: Vec<Node>,
 }
@@ -24,6 +24,7 @@ struct Node {
 }
 
 impl TriangleTree {
+    /// Builds the tree.
     pub fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
         let mut nodes = Vec::with_capacity(triangles.len());
         if !triangles.is_empty() {
@@ -34,7 +35,18 @@ impl TriangleTree {
 
     /// The distance to the nearest triangle, or `limit` where none is nearer.
     pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
+        self.search(p, limit).0
+    }
+
+    /// The nearest triangle and its distance; `None` where there is none.
+    pub fn nearest(&self, p: DVec3) -> Option<(f64, [DVec3; 3])> {
+        let (distance, triangle) = self.search(p, f64::INFINITY);
+        triangle.map(|t| (distance, self.triangles[t]))
+    }
+
+    fn search(&self, p: DVec3, limit: f64) -> (f64, Option<usize>) {
         let mut best = limit * limit;
+        let mut found = None;
         let mut stack: Vec<u32> = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = stack.pop() {
             let node = &self.nodes[index as usize];
@@ -43,8 +55,11 @@ impl TriangleTree {
             }
             if node.second == 0 {
                 let range = node.first as usize..(node.first + node.count) as usize;
-                for &triangle in &self.triangles[range] {
-                    best = best.min(closest_point(p, triangle).distance_squared(p));
+                for index in range {
+                    let distance = closest_point(p, self.triangles[index]).distance_squared(p);
+                    if distance < best {
+                        (best, found) = (distance, Some(index));
+                    }
                 }
                 continue;
             }
@@ -54,7 +69,7 @@ impl TriangleTree {
                 <= box_distance_squared(p, &self.nodes[b as usize]);
             stack.extend(if nearer_a { [b, a] } else { [a, b] });
         }
-        best.sqrt()
+        (best.sqrt(), found)
     }
 }
 
@@ -83,8 +98,11 @@ fn box_distance_squared(p: DVec3, node: &Node) -> f64 {
 }
 
 /// The point of a triangle closest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
-fn closest_point(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+pub(crate) fn closest_point(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
+    if ab.cross(ac) == DVec3::ZERO {
+        return closest_on_sides(p, [a, b, c]);
+    }
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {
         return a;
@@ -116,6 +134,18 @@ fn closest_point(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     if denominator == 0.0 { a } else { a + ab * (vb / denominator) + ac * (vc / denominator) }
 }
 
+/// Of a triangle without area.
+fn closest_on_sides(p: DVec3, t: [DVec3; 3]) -> DVec3 {
+    let on_side = |i: usize| {
+        let (a, d) = (t[i], t[(i + 1) % 3] - t[i]);
+        let share = (p - a).dot(d) / d.length_squared();
+        if share.is_finite() { a + d * share.clamp(0.0, 1.0) } else { a }
+    };
+    let [a, b, c] = [0, 1, 2].map(on_side);
+    let nearer = |a: DVec3, b: DVec3| if b.distance_squared(p) < a.distance_squared(p) { b } else { a };
+    nearer(nearer(a, b), c)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,6 +153,15 @@ mod tests {
 
     fn points(range: std::ops::Range<usize>) -> impl Strategy<Value = Vec<DVec3>> {
         prop::collection::vec(prop::array::uniform3(-1.0..1.0).prop_map(DVec3::from), range)
+    }
+
+    #[test]
+    fn triangles_without_area_are_segments_and_points() {
+        let (a, b, p) = (DVec3::ZERO, DVec3::X, DVec3::new(0.5, 1.0, 0.0));
+        for t in [[a, a, b], [a, b, a], [b, a, a], [a, b, b], [a, b, DVec3::new(0.25, 0.0, 0.0)]] {
+            assert_eq!(closest_point(p, t), DVec3::new(0.5, 0.0, 0.0), "{t:?}");
+        }
+        assert_eq!(closest_point(p, [b, b, b]), b);
     }
 
     proptest! {
