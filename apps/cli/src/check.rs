@@ -50,11 +50,17 @@ fn text(found: &CheckReport) -> String {
 fn distances(out: &mut String, against: &AgainstReport) {
     let within =
         against.reference_error.map_or_else(String::new, |e| format!(", right to within {e:.3e} mm"));
-    let _ = writeln!(out, "\nagainst     {}, measured at samples", against.model);
+    let _ = writeln!(out, "\nagainst     {}, {}", against.model, against.method);
+    let at_most = |most: Option<f64>| most.map_or_else(String::new, |m| format!(", at most {m:.6e} mm"));
     let _ = writeln!(
         out,
-        "mesh → model  {:.6e} mm at {} samples{within}\nmodel → mesh  {:.6e} mm at {} samples",
-        against.mesh_to_model, against.mesh_samples, against.model_to_mesh, against.model_samples
+        "mesh → model  {:.6e} mm at {} samples{within}{}\nmodel → mesh  {:.6e} mm at {} samples{}",
+        against.mesh_to_model,
+        against.mesh_samples,
+        at_most(against.mesh_to_model_at_most),
+        against.model_to_mesh,
+        against.model_samples,
+        at_most(against.model_to_mesh_at_most)
     );
     if against.faces_not_compared > 0 {
         let _ = writeln!(out, "{} faces of the model were not compared", against.faces_not_compared);

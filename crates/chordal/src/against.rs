@@ -1,14 +1,15 @@
-//! How far a mesh, whoever made it, lies from a CAD model: measured at samples, in both directions.
+//! How far a mesh, whoever made it, lies from a CAD model: measured at samples, and enclosed, in both directions.
 //!
 //! The model is meshed finely; vertices of that mesh lie on the exact surfaces, and its triangles within its proven
 //! error of them. Model → mesh: from these vertices to the nearest triangle of the mesh. Mesh → model: from samples of
-//! the mesh to the nearest fine triangle, right to within the fine mesh's proven error.
+//! the mesh to the nearest fine triangle, right to within the fine mesh's proven error. Where every face is proven, branch and
+//! bound between the two meshes also says what no point can exceed.
 
 use crate::job::{MeshedPart, mesh_parts, read_model};
 use crate::names::{entity_id, face_kind};
 use crate::resolve::{Resolved, resolve};
-use crate::triangle_tree::TriangleTree;
 use crate::{JobError, JobOptions};
+use chordal_audit::{TriangleTree, largest_distance};
 use chordal_brep::Model;
 use chordal_mesh::TriangleSoup;
 use chordal_tessellate::Cancel;
@@ -26,12 +27,17 @@ const WORST: usize = 10;
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AgainstReport {
     pub model: String,
-    /// Always "measured": largest distances over samples, which are lower bounds.
+    /// "branch and bound": the distances lie between those measured at samples and `…_at_most`; "measured": largest
+    /// distances over samples, which are lower bounds.
     pub method: String,
     /// Largest distance of a sample of the mesh from the model, right to within `reference_error`.
     pub mesh_to_model: f64,
     /// Largest distance of a point of the model's exact faces from the mesh.
     pub model_to_mesh: f64,
+    /// No point of the mesh is farther from the model; `null` where a face of the model has no proof.
+    pub mesh_to_model_at_most: Option<f64>,
+    /// No point of the model's exact faces is farther from the mesh; `null` where one of them has no proof.
+    pub model_to_mesh_at_most: Option<f64>,
     /// Proven error of the fine mesh that stands for the model; `null` where one of its faces has no proof.
     pub reference_error: Option<f64>,
     pub mesh_samples: usize,
@@ -65,9 +71,11 @@ pub fn measure_against(
     let model = read_model(input)?;
     let resolved = resolve(&model, options, None, input, &cancel)?;
     let parts = mesh_parts(&model, &resolved, &cancel, &|_| ());
-    let mesh =
-        TriangleTree::new(soup.triangles.iter().map(|t| t.map(|i| soup.positions[i as usize])).collect());
-    let fine = TriangleTree::new(placed_triangles(&resolved, &parts));
+    let mesh_triangles: Vec<[DVec3; 3]> =
+        soup.triangles.iter().map(|t| t.map(|i| soup.positions[i as usize])).collect();
+    let fine_triangles = placed_triangles(&resolved, &parts);
+    let mesh = TriangleTree::new(mesh_triangles.clone());
+    let fine = TriangleTree::new(fine_triangles.clone());
 
     let samples = mesh_samples(soup);
     let farthest = |tree: &TriangleTree, p: DVec3| tree.distance(p, f64::INFINITY);
@@ -76,15 +84,23 @@ pub fn measure_against(
     let model_samples = faces.iter().map(|f| f.1).sum();
     faces.sort_by(|a, b| b.0.distance.total_cmp(&a.0.distance));
     let model_to_mesh = faces.first().map_or(0.0, |f| f.0.distance);
+    let faces_not_compared = model.placed_faces() - faces.len();
+    // How far the fine mesh may be from the model, with what the file is loose by.
+    let apart = reference_distance(&resolved, &parts).filter(|_| faces_not_compared == 0);
+    let at_most = |from: &[[DVec3; 3]], to: &TriangleTree, seen: f64, apart: f64| {
+        largest_distance(from, to, (0.1 * apart).max(1e-3 * seen)).at_most + apart
+    };
     Ok(AgainstReport {
         model: input.display().to_string(),
-        method: "measured".into(),
+        method: if apart.is_some() { "branch and bound" } else { "measured" }.into(),
         mesh_to_model,
         model_to_mesh,
+        mesh_to_model_at_most: apart.map(|apart| at_most(&mesh_triangles, &fine, mesh_to_model, apart)),
+        model_to_mesh_at_most: apart.map(|apart| at_most(&fine_triangles, &mesh, model_to_mesh, apart)),
         reference_error: reference_error(&resolved, &parts),
         mesh_samples: samples.len(),
         model_samples,
-        faces_not_compared: model.placed_faces() - faces.len(),
+        faces_not_compared,
         worst_faces: faces.into_iter().map(|f| f.0).take(WORST).collect(),
     })
 }
@@ -151,6 +167,15 @@ fn face_distances(
         }
     }
     found
+}
+
+/// The largest distance of the fine mesh from the exact faces, and the other way round: proven error and gap.
+fn reference_distance(resolved: &Resolved, parts: &[MeshedPart]) -> Option<f64> {
+    let faces = parts.iter().zip(&resolved.uses).flat_map(|(part, part_use)| {
+        let meshed = part.report.faces.iter().filter(|f| f.triangles > 0);
+        meshed.map(|f| (f.proven_error + f.gap) * part_use.scale)
+    });
+    faces.map(|e| e.is_finite().then_some(e)).try_fold(0.0, |largest, e| Some(f64::max(largest, e?)))
 }
 
 fn reference_error(resolved: &Resolved, parts: &[MeshedPart]) -> Option<f64> {
