@@ -184,7 +184,7 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     let bounds_of = boundary(context, face, mesh, &halves.single);
     check_triangles(context, &chart, &mut found, &mut log);
     found.turned_over = is_turned_over(&chart, &bounds_of, log.face);
-    check_boundary(context, &bounds_of, &mut log);
+    check_boundary(context, &chart, &bounds_of, &mut log);
     gather_shared(context, mesh, &halves, &mut found);
     if found.duplicates > 0 {
         log.add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
@@ -386,7 +386,20 @@ fn is_turned_over(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
     chart.turned != face.normal_reversed() && bounds.forward == 0
 }
 
-fn check_boundary(context: &Context<'_>, bounds: &Boundary, log: &mut Log<'_>) {
+/// True on the side of the surface's own domain that bounds a face without loops.
+fn is_natural(chart: &Chart<'_>, face: &Face, half: &Half) -> bool {
+    let domain = chart.surface.domain();
+    let [a, b] = [half.a, half.b].map(|c| chart.mesh.corners[c as usize].uv);
+    let near = 1e-9 * domain.size();
+    face.loops.is_empty()
+        && (0..2).any(|i| {
+            [domain.min[i], domain.max[i]]
+                .iter()
+                .any(|side| (a[i] - side).abs() <= near[i] && (b[i] - side).abs() <= near[i])
+        })
+}
+
+fn check_boundary(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary, log: &mut Log<'_>) {
     if bounds.missing > 0 {
         let edge = bounds.missing_edge.map_or(String::new(), |e| {
             format!(", the first of edge {}", context.part.edges[e as usize].source)
@@ -396,11 +409,9 @@ fn check_boundary(context: &Context<'_>, bounds: &Boundary, log: &mut Log<'_>) {
             format!("is not bounded by {} chords of its edges{edge}", bounds.missing),
         );
     }
-    if !bounds.stray.is_empty() {
-        log.add(
-            ProblemKind::StrayBoundary,
-            format!("ends at {} places where it has no edge", bounds.stray.len()),
-        );
+    let stray = bounds.stray.iter().filter(|h| !is_natural(chart, log.face, h)).count();
+    if stray > 0 {
+        log.add(ProblemKind::StrayBoundary, format!("ends at {stray} places where it has no edge"));
     }
 }
 
