@@ -42,7 +42,8 @@ pub(crate) fn prove(
         }
     }
     let facets = facets_error(context, chart, &bounds, &sides, log.index);
-    found.claimable = facets.claimable.max(chords);
+    // At poles the mesher proves a triangle with another of the pole's parameters: claims cannot be compared there.
+    found.claimable = facets.plain.max(chords);
     found.error = facets.error.max(chords).max(slivers);
     let total = found.error + context.options.coordinate_rounding;
     let tolerance = context.options.tolerance;
@@ -61,8 +62,6 @@ pub(crate) fn prove(
 struct FacetsError {
     /// Of all triangles, those at poles over their sectors.
     error: f64,
-    /// Of all triangles as the mesher sees them.
-    claimable: f64,
     /// Of triangles that touch no pole.
     plain: f64,
 }
@@ -91,7 +90,6 @@ fn facets_error(
                 // How far a bound is pursued depends on what would be enough.
                 plain = plain.min(facet_bound(bounds, &facet, claimed, &mut scratch).error);
             }
-            worst.claimable = worst.claimable.max(plain);
             match chart.fan_corner(&t) {
                 None => worst.plain = worst.plain.max(plain),
                 Some(i) => {
@@ -106,7 +104,6 @@ fn facets_error(
     let chunks = chart.mesh.triangles.par_chunks(CHUNK).zip(sides.par_chunks(CHUNK));
     chunks.map(judge).reduce(FacetsError::default, |a, b| FacetsError {
         error: a.error.max(b.error),
-        claimable: a.claimable.max(b.claimable),
         plain: a.plain.max(b.plain),
     })
 }
