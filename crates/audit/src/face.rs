@@ -28,7 +28,7 @@ pub(crate) struct FaceFindings {
     pub audit: FaceAudit,
     /// The recomputed error before the rounding of the written coordinates; NaN where nothing is proven.
     pub error: f64,
-    /// The same by the mesher's own account, which sees triangles and chords alone.
+    /// The same without what is at poles, where the mesher may go by other parameters than it writes.
     pub claimable: f64,
     /// Largest distance of a corner from the surface.
     pub surface_gap: f64,

@@ -13,7 +13,8 @@
 //!
 //! The sectors between lines of one parameter cover what the fans and slivers cover, and neighbours share their sides.
 //! Over a sector n·(S − X) is bounded for the facet's normal n (second derivatives, with lattice points in between), and the
-//! images of the three sides may bend sideways by τ, which costs the slope of S against the facet times τ.
+//! images of the three sides may bend sideways by τ, which costs the slope of S against the facet times τ. A side that is a chord
+//! of a model edge ends the face: the lens between the image of its line and the edge is as near to the chord as the two are.
 //!
 //! Not proven: that slope is sampled, because second derivatives say little of it at a pole; 1.5 times what was seen is used.
 
@@ -27,8 +28,6 @@ pub(crate) enum Side {
     Inner,
     /// A chord of a model edge, which lies this near to its curve.
     Chord(f64),
-    /// A cut with the same chart on its other side, whole periods on.
-    Seam,
 }
 
 impl Side {
@@ -62,14 +61,12 @@ pub(crate) fn fan_bound(bounds: &SurfaceBounds<'_>, fan: &Fan, enough: f64, piec
     let [x, y, p] = fan.uv;
     let [px, py, pp] = fan.xyz;
     let Some(n) = (py - px).cross(pp - px).try_normalize() else { return f64::INFINITY };
-    let beside = |corner: DVec2, side: Side| {
+    let beside = |corner: DVec2| {
         let mut q = p;
-        if side == Side::Inner {
-            q[1 - fan.axis] = corner[1 - fan.axis];
-        }
+        q[1 - fan.axis] = corner[1 - fan.axis];
         q
     };
-    let (q_x, q_y) = (beside(x, fan.sides[1]), beside(y, fan.sides[0]));
+    let (q_x, q_y) = (beside(x), beside(y));
     let slope = SLOPE_MARGIN * slope(bounds, n, [x, y, q_y, q_x]);
     let mut best = f64::INFINITY;
     for parts in PARTS {
@@ -83,7 +80,7 @@ pub(crate) fn fan_bound(bounds: &SurfaceBounds<'_>, fan: &Fan, enough: f64, piec
             let leaning = if slope < 0.5 { along + 2.0 * slope * shift } else { f64::INFINITY };
             let whole = along.hypot(shift);
             error = error.max(match side {
-                Side::Chord(sag) => whole.max(sag),
+                Side::Chord(sag) => one.segment(a, b, pieces).hypot(shift).max(sag),
                 _ => leaning.min(whole),
             });
         }

@@ -35,14 +35,12 @@ pub(crate) fn prove(
     let mut slivers = 0.0f64;
     for cut in &at.cuts {
         match cuts::judge(chart, &bounds, cut, &mut scratch) {
-            Cut::Seam => {
-                cut.iter().for_each(|h| sides[h.triangle as usize][h.side as usize] = Side::Seam);
-            }
+            Cut::Seam => {}
             Cut::Sliver(error) => slivers = slivers.max(error),
         }
     }
     let facets = facets_error(context, chart, &bounds, &sides, log.index);
-    // At poles the mesher proves a triangle with another of the pole's parameters: claims cannot be compared there.
+    // At poles the mesher goes by other parameters than it writes: claims cannot be compared there.
     found.claimable = facets.plain.max(chords);
     found.error = facets.error.max(chords).max(slivers);
     let total = found.error + context.options.coordinate_rounding;
@@ -85,18 +83,17 @@ fn facets_error(
             let uv = t.map(|c| chart.mesh.corners[c as usize].uv);
             let xyz = t.map(|c| chart.xyz[c as usize]);
             let facet = Facet { uv, xyz, sag: s.map(Side::sag) };
+            if let Some(i) = chart.fan_corner(&t) {
+                let error = sector(chart, bounds, &t, &facet, s, i, enough, &mut scratch);
+                worst.error = worst.error.max(error);
+                continue;
+            }
             let mut plain = facet_bound(bounds, &facet, enough, &mut scratch).error;
             if plain > claimed {
                 // How far a bound is pursued depends on what would be enough.
                 plain = plain.min(facet_bound(bounds, &facet, claimed, &mut scratch).error);
             }
-            match chart.fan_corner(&t) {
-                None => worst.plain = worst.plain.max(plain),
-                Some(i) => {
-                    worst.error =
-                        worst.error.max(sector(chart, bounds, &t, &facet, s, i, enough, &mut scratch))
-                }
-            }
+            worst.plain = worst.plain.max(plain);
         }
         worst.error = worst.error.max(worst.plain);
         worst
