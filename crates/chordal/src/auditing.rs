@@ -27,12 +27,13 @@ pub(crate) struct AuditedShell {
     pub missing_faces: usize,
 }
 
-/// Audits every part that is placed.
-pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &[MeshedPart]) -> Vec<AuditedPart> {
+/// Audits every part that is placed. What the audit proves of a face less tightly than the mesher takes the place of the
+/// mesher's own figure.
+pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &mut [MeshedPart]) -> Vec<AuditedPart> {
     model
         .parts
         .par_iter()
-        .zip(parts)
+        .zip(parts.par_iter_mut())
         .zip(resolved.uses.par_iter().zip(&resolved.parts))
         .map(
             |((part, meshed), (part_use, options))| {
@@ -42,12 +43,19 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &[MeshedPar
         .collect()
 }
 
-fn audit(part: &Part, meshed: &MeshedPart, options: &Options) -> AuditedPart {
+fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options) -> AuditedPart {
     let claims: Vec<Claim> = meshed.report.faces.iter().map(claim).collect();
     let asked = AuditOptions::new(options.tolerance)
         .with_angle(options.angle)
         .with_proven(options.bound == Bound::Proven);
     let audit = audit_part(part, &meshed.mesh, &asked, Some(&claims));
+    for (of_face, audited) in meshed.report.faces.iter_mut().zip(&audit.faces) {
+        // Not where nothing is proven: that stays so.
+        if of_face.proven_error < audited.proven_error {
+            of_face.proven_error = audited.proven_error;
+        }
+        of_face.gap = of_face.gap.max(audited.gap);
+    }
     let shells = part.shells.iter().zip(&audit.shells).map(|(shell, audited)| AuditedShell {
         closed_in_file: audited.closed_in_file,
         open_edges: audited.open_edges,

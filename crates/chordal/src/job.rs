@@ -120,12 +120,12 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
         ledger.time(|s| &mut s.resolve, || resolve(&model, &job.options, format, &job.input, &job.cancel))?;
 
     // 3. Mesh every placed part once: heal, discretise edges, size, place, trim and triangulate, stitch.
-    let parts = mesh_parts(&model, &resolved, &job.cancel, &|progress| job.tell(progress));
+    let mut parts = mesh_parts(&model, &resolved, &job.cancel, &|progress| job.tell(progress));
     job.check_cancelled()?;
 
     // 4. Audit: recompute every promise from the model and the meshes.
     job.tell(Progress::Auditing);
-    let audits = ledger.time(|s| &mut s.audit, || audit_parts(&model, &resolved, &parts));
+    let audits = ledger.time(|s| &mut s.audit, || audit_parts(&model, &resolved, &mut parts));
     job.check_cancelled()?;
 
     // 5. Account: what was done, what is proven, what was left undone.
