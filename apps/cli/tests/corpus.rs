@@ -12,7 +12,6 @@ const KNOWN: &[(&str, &str)] = &[
         "extrusion_bspline",
         "facets between nearly coincident parameters along the profile are thin as rounding",
     ),
-    ("revolution_pole", "at the pole the audit's bound is above the mesher's by a thousandth"),
     ("torus_villarceau", "a loop winds round the torus both ways at once"),
     ("nested_loops", "two outer loops in one face: the second lies inside a hole of the first"),
     ("degree_100", "thin triangles; slow to evaluate"),
