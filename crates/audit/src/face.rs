@@ -95,7 +95,7 @@ impl<'a> Chart<'a> {
             uv_box: UvBox::from_points(mesh.corners.iter().map(|c| c.uv)),
             wrap: Wrap::of(surface),
             periods: surface.periods(),
-            poles: surface.poles_within(0.1 * context.options.tolerance),
+            poles: surface.poles_within(context.same_point),
             xyz: Vec::new(),
             rounding: ROUNDING * (context.scale + magnitude(surface)),
             turned: false,
@@ -287,6 +287,13 @@ fn is_misplaced(context: &Context<'_>, chart: &Chart<'_>, position: u32, on_surf
         // Control rows that all but meet are one pole, and one vertex.
         let pole = chart.poles.iter().any(|pole| pole.point.distance(p) <= 0.1 * context.options.tolerance);
         return !pole || distance > 0.1 * context.options.tolerance + context.options.coordinate_rounding;
+    }
+    // What the mesher owns up to is the file's looseness as far as anyone can tell.
+    if context
+        .claim(chart.mesh.face as usize)
+        .is_some_and(|c| distance <= c.gap * (1.0 + 1e-6) + chart.rounding)
+    {
+        return false;
     }
     let nearest = SurfaceInverter::new(chart.surface, chart.uv_box).invert(p, None).distance;
     distance > 2.0 * nearest + 0.1 * context.options.tolerance + context.options.coordinate_rounding

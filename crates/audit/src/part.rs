@@ -7,7 +7,16 @@ use crate::report::{AuditOptions, Claim, PartAudit, Problem, ProblemKind, Subjec
 use crate::shell::audit_shell;
 use chordal_brep::{BodyKind, FaceGeometry, Part};
 use chordal_mesh::{Origin, PartMesh};
+use chordal_nurbs::Box3;
 use rayon::prelude::*;
+
+/// Points nearer together than this share of the tolerance, and of the part, may be one vertex.
+const SAME_POINT: f64 = 0.1;
+const SAME_POINT_OF_PART: f64 = 1e-6;
+
+fn diagonal(mesh: &PartMesh) -> f64 {
+    Box3::from_points(mesh.positions.iter().copied()).diagonal()
+}
 
 /// What all faces of a part share.
 pub(crate) struct Context<'a> {
@@ -17,6 +26,8 @@ pub(crate) struct Context<'a> {
     pub claims: Option<&'a [Claim]>,
     /// The largest coordinate of the mesh.
     pub scale: f64,
+    /// Points nearer together may be one vertex: the end rows of a surface at a pole.
+    pub same_point: f64,
     /// The position of each vertex of the part, where it has one.
     pub vertex_at: Vec<Option<u32>>,
     pub edges: Vec<EdgeAudit>,
@@ -37,7 +48,7 @@ impl Context<'_> {
         (AIM * tolerance, claimed)
     }
 
-    fn claim(&self, face: usize) -> Option<Claim> {
+    pub fn claim(&self, face: usize) -> Option<Claim> {
         self.claims.and_then(|claims| claims.get(face)).copied()
     }
 
@@ -68,6 +79,7 @@ pub fn audit_part(
         options,
         claims,
         scale: mesh.positions.iter().fold(0.0, |m: f64, p| m.max(p.abs().max_element())),
+        same_point: (SAME_POINT * options.tolerance).min(SAME_POINT_OF_PART * diagonal(mesh)),
         vertex_at: Vec::new(),
         edges: Vec::new(),
     };
