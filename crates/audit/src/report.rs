@@ -119,6 +119,8 @@ pub struct ShellAudit {
     /// No open and no inconsistent edge.
     pub watertight: bool,
     pub open_edges: usize,
+    /// How many open edges a single face of the file's shell uses.
+    pub open_in_file: usize,
     pub inconsistent_edges: usize,
     /// How many of them the file's own loops run along in one direction.
     pub inconsistent_in_file: usize,

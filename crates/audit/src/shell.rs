@@ -56,13 +56,16 @@ fn count_edges(context: &Context<'_>, faces: &[FaceFindings], index: usize, audi
         let back = group.iter().filter(|k| k.1).count();
         let balanced = 2 * back == group.len();
         match group.len() {
-            1 => audit.open_edges += 1,
             2 if balanced => {}
             n => {
                 let uses = uses.get_or_insert_with(|| model_uses(context, index));
                 let of_model = uses.get(&group[0].0).copied().unwrap_or_default();
-                audit.inconsistent_edges += usize::from(!balanced);
-                audit.inconsistent_in_file += usize::from(!balanced && of_model.there != of_model.back);
+                let of_model_open = of_model.there + of_model.back == 1;
+                audit.open_edges += usize::from(n == 1);
+                audit.open_in_file += usize::from(n == 1 && of_model_open);
+                audit.inconsistent_edges += usize::from(n > 1 && !balanced);
+                audit.inconsistent_in_file +=
+                    usize::from(n > 1 && !balanced && of_model.there != of_model.back);
                 audit.non_manifold_edges += usize::from(n > 2 && of_model.there + of_model.back != n);
             }
         }
@@ -105,6 +108,10 @@ fn shared_duplicates<'a>(faces: impl Iterator<Item = &'a FaceFindings>) -> usize
     triples.windows(2).filter(|w| w[0] == w[1]).count()
 }
 
+fn in_file(count: usize) -> String {
+    if count == 0 { String::new() } else { format!(", {count} of them in the file") }
+}
+
 fn describe(context: &Context<'_>, sign: i8, found: &mut ShellFindings) {
     let audit = found.audit;
     let source = context.part.shells[audit.shell as usize].source;
@@ -113,14 +120,15 @@ fn describe(context: &Context<'_>, sign: i8, found: &mut ShellFindings) {
         found.problems.push(Problem { subject: Subject::Shell(audit.shell), kind, sentence });
     };
     if audit.closed_in_file && audit.complete && audit.open_edges > 0 {
-        add(ProblemKind::OpenShell, format!("is closed in the file and has {} open edges", audit.open_edges));
+        let in_file = in_file(audit.open_in_file);
+        add(
+            ProblemKind::OpenShell,
+            format!("is said to be closed and has {} open edges{in_file}", audit.open_edges),
+        );
     }
     // An open shell may well be put together from faces that do not agree.
     if audit.inconsistent_edges > if audit.closed_in_file { 0 } else { audit.inconsistent_in_file } {
-        let in_file = match audit.inconsistent_in_file {
-            0 => String::new(),
-            n => format!(", {n} of them in the file"),
-        };
+        let in_file = in_file(audit.inconsistent_in_file);
         add(
             ProblemKind::InconsistentEdges,
             format!("has {} inconsistent edges{in_file}", audit.inconsistent_edges),
