@@ -80,7 +80,8 @@ pub(crate) fn fan_bound(bounds: &SurfaceBounds<'_>, fan: &Fan, enough: f64, piec
             let leaning = if slope < 0.5 { along + 2.0 * slope * shift } else { f64::INFINITY };
             let whole = along.hypot(shift);
             error = error.max(match side {
-                Side::Chord(sag) => one.segment(a, b, pieces).hypot(shift).max(sag),
+                // What lies in the lens lies over the facet's plane, and on level ground only its height counts.
+                Side::Chord(sag) => one.segment(a, b, pieces).hypot(shift).min(leaning).max(sag),
                 _ => leaning.min(whole),
             });
         }
