@@ -253,9 +253,17 @@ impl FaceContext<'_, '_> {
         let mut runs: Vec<Run> = Vec::with_capacity(coedges.len());
         let mut near = None;
         for coedge in coedges {
-            if let Some(run) = self.run(coedge, near) {
-                near = run.uv.last().copied();
-                runs.push(run);
+            match self.run(coedge, near) {
+                Some(run) => {
+                    near = run.uv.last().copied();
+                    runs.push(run);
+                }
+                // Only an edge that is a single point has no chords.
+                None if self.part.edges[coedge.edge.index()].curve.is_some() => {
+                    let source = self.part.edges[coedge.edge.index()].source;
+                    return Err(format!("its edge {source} cannot be sampled"));
+                }
+                None => {}
             }
         }
         if runs.is_empty() {

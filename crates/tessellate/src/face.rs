@@ -5,7 +5,7 @@ use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Bound, Cancel, Options};
 use crate::place::Rows;
 use crate::prove::{Prover, Verdict};
-use crate::triangulate::{Location, NONE, Triangulation, clip_ears, sweep};
+use crate::triangulate::{Location, NONE, Triangulation, clip_ears, orient, sweep};
 use crate::unroll::{Chart, SEAM_CHORD};
 use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceBounds, UvBox};
 use std::time::Instant;
@@ -134,12 +134,15 @@ impl<'a, 's> FaceWork<'a, 's> {
         let chart = Chart::new(context, limits, how.seam_chord)?;
         let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
         let shape = shape(context, limits, UvBox::from_points(points.iter().copied()));
+        let mut clipped = false;
         let triangles = match boundary_triangles(&points, &chart, shape) {
             Ok(triangles) => triangles,
-            Err(_) if context.last_resort && clip_ears(&points, &chart.loops).is_some() => {
-                clip_ears(&points, &chart.loops).unwrap_or_default()
+            Err(culprits) => {
+                let ears = if context.last_resort { clip_ears(&points, &chart.loops) } else { None };
+                let Some(ears) = ears else { return finer_or_fail(&chart, &culprits).map(Attempt::Over) };
+                clipped = true;
+                ears
             }
-            Err(culprits) => return finer_or_fail(&chart, &culprits).map(Attempt::Over),
         };
         let uv_box = UvBox::from_points(points.iter().copied());
         let mut work = Self {
@@ -167,6 +170,11 @@ impl<'a, 's> FaceWork<'a, 's> {
             Verdict::Finer(chords) => Ok(Attempt::Over(Outcome::Finer(chords))),
             Verdict::FinerSeam => Ok(Attempt::FinerSeam),
             Verdict::Stuck => Ok(Attempt::Stuck),
+            // Turned over, a triangle may lie outside of the face, which no distance to the surface would show.
+            Verdict::Proven { .. } if clipped && work.is_turned_somewhere() => {
+                let result = work.finish(f64::INFINITY, "none", options);
+                Ok(Attempt::Over(Outcome::Done(Box::new(result))))
+            }
             Verdict::Proven { error, bound } => {
                 Ok(Attempt::Over(Outcome::Done(Box::new(work.finish(error, bound, options)))))
             }
@@ -230,6 +238,14 @@ impl<'a, 's> FaceWork<'a, 's> {
     /// The normal by which edges turn; zero at poles.
     pub fn turning_normal(&self, vertex: u32) -> DVec3 {
         if self.at_pole[vertex as usize] { DVec3::ZERO } else { self.normals[vertex as usize] }
+    }
+
+    /// True where a triangle runs clockwise in the chart.
+    fn is_turned_somewhere(&self) -> bool {
+        (0..self.mesh.triangles.len() as u32).any(|t| {
+            let [a, b, c] = self.mesh.corners(t);
+            orient(a, b, c) < 0.0
+        })
     }
 
     /// The boundary segment from one chart vertex to another, where there is one.
@@ -410,7 +426,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         }
     }
 
-    /// c·∫√|K| dA / ε over the triangles (DESIGN "Economy"), or the strips of a singly curved face.
+    /// c·∫√|K| dA / ε over the triangles (`docs/report.md`), or the strips of a singly curved face.
     fn curvature_bound(&self) -> f64 {
         let limits = Limits { angle: f64::INFINITY, length: f64::INFINITY, ..*self.limits };
         match self.shape {

@@ -1,4 +1,4 @@
-//! The fewest triangles possible on one face (DESIGN "Economy"): a reference that never looks at our own mesh's edges.
+//! The fewest triangles possible on one face (`docs/report.md`): a reference that never looks at our own mesh's edges.
 
 use crate::edges::EdgeSamples;
 use chordal_brep::{Face, Loop};

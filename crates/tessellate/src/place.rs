@@ -1,6 +1,6 @@
 //! Size and place: rows of points inside a doubly curved face, staggered, at the spacing that the curvature allows.
 //!
-//! In units of the longest allowed chord (sagitta ε, see `shared` lower bound of DESIGN "Economy"):
+//! In units of the longest allowed chord (sagitta ε, for the fewest triangles see `docs/report.md`):
 //! - K > 0: a triangle must fit in a circle of diameter 1. Equilateral: base √3/2, height 3/4. Where rows are nearer together
 //!   (h < 3/4, because a whole number of them must fit) the base may grow to 2√(h − h²), up to 1.
 //! - K < 0: only edges matter. Base 1, height √5/2, apex over the middle: the largest triangle there is.

@@ -12,7 +12,7 @@ pub struct FaceReport {
     pub gap: f64,
     /// Which bound proved it ("plane", "second derivatives", "none" …).
     pub bound: &'static str,
-    /// The fewest triangles possible, see DESIGN "Economy".
+    /// The fewest triangles possible, see `docs/report.md`.
     pub lower_bound: f64,
     /// Why the face has no triangles, or not good enough ones.
     pub failed: Option<String>,
