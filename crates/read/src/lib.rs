@@ -31,8 +31,16 @@ pub fn read_bytes(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(ReadError::Empty { name: name.to_owned() });
     }
-    if !step::looks_like_step(bytes) {
-        return Err(ReadError::UnknownFormat { name: name.to_owned() });
-    }
-    step::read(bytes, name)
+    let known = FORMATS.iter().find(|format| (format.looks_like)(bytes));
+    let format = known.ok_or_else(|| ReadError::UnknownFormat { name: name.to_owned() })?;
+    (format.read)(bytes, name)
 }
+
+/// A format: how its content is told from the others' and how it is read.
+struct Format {
+    looks_like: fn(&[u8]) -> bool,
+    read: fn(&[u8], &str) -> Result<Model, ReadError>,
+}
+
+/// In the order in which they are tried: the surest signs first.
+const FORMATS: &[Format] = &[Format { looks_like: step::looks_like_step, read: step::read }];
