@@ -5,6 +5,8 @@
 
 mod error;
 mod step;
+#[allow(dead_code, reason = "the readers that use all of it are on their way")]
+mod trimmed;
 
 use chordal_brep::Model;
 use std::path::Path;

@@ -1,0 +1,141 @@
+//! Pieces of parameter curves as a closed chain, cut at its corners.
+
+use super::{Piece, Scale, TrimLoop};
+use chordal_brep::Warning;
+use chordal_nurbs::{DVec2, Range};
+
+/// Ends of pieces nearer together than this share of the domain meet: files of 32-bit numbers round to about this.
+/// Wider gaps are bridged, and said to be.
+const MEETS: f64 = 1e-6;
+
+/// Pieces turn by more than this (radians, in the unit square) at a corner, which becomes a vertex.
+const CORNER: f64 = 0.2;
+
+/// Samples of a smooth piece when its shape is looked at.
+const SAMPLES: usize = 16;
+
+/// A chain that is closed, up to whole periods of the surface.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    pub pieces: Vec<Piece>,
+    pub role: super::Role,
+    pub source: chordal_brep::Source,
+    /// It ends a period of the surface beyond its start.
+    pub winds: bool,
+}
+
+impl Chain {
+    /// Points along the chain in the unit square, the first not repeated.
+    pub(super) fn polygon(&self, scale: &Scale) -> Vec<DVec2> {
+        let mut points = Vec::new();
+        for piece in &self.pieces {
+            let mut stops = vec![piece.range.start];
+            stops.extend(piece.curve.all_breaks(piece.range));
+            stops.push(piece.range.end);
+            let from = points.len();
+            for pair in stops.windows(2) {
+                let at = |k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / SAMPLES as f64;
+                points.extend((0..SAMPLES).map(|k| scale.unit(piece.curve.point(at(k)))));
+            }
+            if !piece.forward {
+                // The samples lack the end instead of the start.
+                points.remove(from);
+                points.push(scale.unit(piece.curve.point(piece.range.end)));
+                points[from..].reverse();
+            }
+        }
+        points
+    }
+
+    pub(super) fn reverse(&mut self) {
+        self.pieces.reverse();
+        self.pieces.iter_mut().for_each(|piece| piece.forward = !piece.forward);
+    }
+}
+
+/// Closes a loop; `None` where it has no extent.
+///
+/// # Errors
+/// A sentence, where the pieces make no loop.
+pub(super) fn closed(
+    trim: &TrimLoop,
+    index: usize,
+    scale: &Scale,
+    warnings: &mut Vec<Warning>,
+) -> Result<Option<Chain>, String> {
+    let number = index + 1;
+    let mut given = Vec::with_capacity(trim.pieces.len());
+    for piece in &trim.pieces {
+        let sound = piece.range.is_finite() && piece.range.length() > 0.0;
+        if !sound || !(0..=8).all(|k| piece.at(f64::from(k) / 8.0).is_finite()) {
+            return Err(format!("its trim loop {number} has a piece without a finite extent"));
+        }
+        let still = (1..=8).all(|k| gap(piece.at(0.0), piece.at(f64::from(k) / 8.0), scale) <= MEETS * 1e-3);
+        if !still {
+            given.push(piece.clone());
+        }
+    }
+    if given.is_empty() {
+        return Ok(None);
+    }
+    let mut pieces: Vec<Piece> = Vec::with_capacity(given.len());
+    let mut winds = false;
+    let mut widest = 0.0f64;
+    for i in 0..given.len() {
+        let last = i + 1 == given.len();
+        let (end, start) = (given[i].at(1.0), given[(i + 1) % given.len()].at(0.0));
+        pieces.extend(cut_at_corners(&given[i], scale));
+        let apart = gap(end, start, scale);
+        if apart <= MEETS {
+            continue;
+        }
+        if last && is_a_turn(end - start, scale) {
+            winds = true;
+            continue;
+        }
+        widest = widest.max(apart);
+        pieces.push(Piece::line(end, start));
+    }
+    if widest > 0.0 {
+        let message = format!(
+            "trim loop {number} is open (by up to {:.2} % of the parameter range) and was closed by straight lines",
+            100.0 * widest
+        );
+        warnings.push(Warning { source: trim.source, message, lost: false });
+    }
+    Ok(Some(Chain { pieces, role: trim.role, source: trim.source, winds }))
+}
+
+/// The distance of two points as a share of the domain.
+fn gap(a: DVec2, b: DVec2, scale: &Scale) -> f64 {
+    scale.unit(a).distance(scale.unit(b))
+}
+
+/// True for one whole period along one direction.
+fn is_a_turn(d_uv: DVec2, scale: &Scale) -> bool {
+    (0..2).any(|axis| {
+        let other = d_uv[1 - axis].abs() / scale.uv.size()[1 - axis].max(f64::MIN_POSITIVE);
+        scale.periods[axis].is_some_and(|p| (d_uv[axis].abs() / p - 1.0).abs() <= MEETS && other <= MEETS)
+    })
+}
+
+/// The piece, cut where its direction jumps.
+fn cut_at_corners(piece: &Piece, scale: &Scale) -> Vec<Piece> {
+    let step = 1e-7 * piece.range.length();
+    let direction = |a: f64, b: f64| scale.unit(piece.curve.point(b)) - scale.unit(piece.curve.point(a));
+    let mut stops = vec![piece.range.start];
+    for t in piece.curve.all_breaks(piece.range) {
+        let (before, after) = (direction(t - step, t), direction(t, t + step));
+        let turn = before.perp_dot(after).atan2(before.dot(after)).abs();
+        if turn > CORNER && t - stops[stops.len() - 1] > step && piece.range.end - t > step {
+            stops.push(t);
+        }
+    }
+    stops.push(piece.range.end);
+    let mut cut: Vec<Piece> =
+        stops.windows(2).map(|pair| Piece { range: Range::new(pair[0], pair[1]), ..piece.clone() }).collect();
+    if !piece.forward {
+        cut.reverse();
+    }
+    cut
+}

@@ -1,0 +1,156 @@
+//! Which loops are outer ones, which are holes, and which holes belong to which outer loop.
+
+use super::chain::Chain;
+use super::natural;
+use super::{Role, Scale};
+use chordal_nurbs::{DVec2, Surface};
+
+/// Loops that follow the surface's border within this share of the domain are the border.
+const ON_BORDER: f64 = 1e-6;
+
+/// Loops may leave the domain by this share of it: beyond, the surface is taken at its border.
+const BEYOND: f64 = 1e-3;
+
+/// The loops of each face: outer ones counter-clockwise, holes clockwise.
+///
+/// # Errors
+/// A sentence, where the loops bound no region of the surface.
+pub(super) fn groups(
+    surface: &Surface,
+    chains: Vec<Chain>,
+    scale: &Scale,
+) -> Result<Vec<Vec<Chain>>, String> {
+    let (winding, plain): (Vec<Chain>, Vec<Chain>) = chains.into_iter().partition(|chain| chain.winds);
+    let mut nested = Vec::with_capacity(plain.len());
+    for (i, chain) in plain.into_iter().enumerate() {
+        let polygon = chain.polygon(scale);
+        let covers = covers_domain(&polygon, scale);
+        if !covers {
+            let beyond = beyond(&polygon, scale);
+            if beyond > BEYOND {
+                let percent = 100.0 * beyond;
+                return Err(format!(
+                    "its trim loop {} leaves the surface by {percent:.1} % of its range",
+                    i + 1
+                ));
+            }
+        }
+        nested.push(Nested { area: area(&polygon), polygon, chain, covers });
+    }
+    nested.retain(|n| n.area != 0.0);
+    let roles = roles(&nested);
+    let mut outers: Vec<Group> = Vec::new();
+    if !winding.is_empty() {
+        outers.push(Group { polygon: None, area: f64::INFINITY, chains: winding });
+    }
+    let mut holes = Vec::new();
+    for (mut n, outer) in nested.into_iter().zip(roles) {
+        if (n.area > 0.0) != outer {
+            n.chain.reverse();
+        }
+        if outer {
+            let chains = if n.covers { natural::loops(surface) } else { vec![n.chain] };
+            outers.push(Group { polygon: Some(n.polygon), area: n.area.abs(), chains });
+        } else {
+            holes.push(n);
+        }
+    }
+    if outers.is_empty() {
+        // Holes alone are cut into the whole surface.
+        outers.push(Group { polygon: None, area: f64::INFINITY, chains: natural::loops(surface) });
+    }
+    for hole in holes {
+        let around = |group: &&mut Group| group.polygon.as_ref().is_none_or(|p| inside(&hole.polygon, p));
+        let owner = outers.iter_mut().filter(around).min_by(|a, b| a.area.total_cmp(&b.area));
+        // A hole outside of everything cuts nothing off.
+        if let Some(owner) = owner {
+            owner.chains.push(hole.chain);
+        }
+    }
+    Ok(outers.into_iter().map(|group| group.chains).collect())
+}
+
+/// A plain loop with its shape in the unit square.
+struct Nested {
+    polygon: Vec<DVec2>,
+    area: f64,
+    chain: Chain,
+    covers: bool,
+}
+
+/// An outer loop with its holes.
+struct Group {
+    /// `None`: all of the surface.
+    polygon: Option<Vec<DVec2>>,
+    area: f64,
+    chains: Vec<Chain>,
+}
+
+/// True for outer loops.
+fn roles(nested: &[Nested]) -> Vec<bool> {
+    let depth = |i: usize| {
+        let around = |j: usize| {
+            j != i
+                && nested[j].area.abs() > nested[i].area.abs()
+                && inside(&nested[i].polygon, &nested[j].polygon)
+        };
+        (0..nested.len()).filter(|&j| around(j)).count()
+    };
+    nested
+        .iter()
+        .enumerate()
+        .map(|(i, n)| match n.chain.role {
+            Role::Outer => true,
+            Role::Hole => false,
+            Role::ByNesting => depth(i) % 2 == 0,
+        })
+        .collect()
+}
+
+fn area(polygon: &[DVec2]) -> f64 {
+    let n = polygon.len();
+    let origin = polygon[0];
+    (0..n).map(|i| (polygon[i] - origin).perp_dot(polygon[(i + 1) % n] - origin)).sum::<f64>() * 0.5
+}
+
+/// True where most of the points lie inside the polygon.
+fn inside(points: &[DVec2], polygon: &[DVec2]) -> bool {
+    // A few points tell: loops do not cross.
+    let step = points.len().div_ceil(32);
+    let seen: Vec<bool> = points.iter().step_by(step).map(|&p| contains(polygon, p)).collect();
+    2 * seen.iter().filter(|&&inside| inside).count() > seen.len()
+}
+
+fn contains(polygon: &[DVec2], p: DVec2) -> bool {
+    let mut inside = false;
+    let n = polygon.len();
+    for i in 0..n {
+        let (a, b) = (polygon[i], polygon[(i + 1) % n]);
+        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+/// True where a loop runs along the border of the domain, or outside of it all the way.
+fn covers_domain(polygon: &[DVec2], scale: &Scale) -> bool {
+    let finite =
+        scale.uv.is_finite() && (0..2).all(|axis| scale.bounded[axis] || scale.periods[axis].is_some());
+    let strictly_inside = |p: &DVec2| p.min_element() > ON_BORDER && p.max_element() < 1.0 - ON_BORDER;
+    finite
+        && !polygon.iter().any(strictly_inside)
+        && contains(polygon, DVec2::splat(0.5))
+        && area(polygon).abs() > 1.0 - 8.0 * ON_BORDER
+}
+
+/// How far a loop leaves the domain, as a share of it.
+fn beyond(polygon: &[DVec2], scale: &Scale) -> f64 {
+    let outside = |p: &DVec2| {
+        (0..2)
+            .filter(|&axis| scale.bounded[axis])
+            .map(|axis| (-p[axis]).max(p[axis] - 1.0))
+            .fold(0.0, f64::max)
+    };
+    polygon.iter().map(outside).fold(0.0, f64::max)
+}
