@@ -25,6 +25,8 @@ pub enum Command {
     /// Check a mesh file: closed, oriented, without degenerate and duplicate triangles; with --against, its measured
     /// distance from a CAD file.
     Check(CheckArgs),
+    /// Write the exact model of a CAD file as Chordal's own JSON, whole and without loss.
+    Convert(ConvertArgs),
     /// Time reading and meshing in process.
     #[command(hide = true)]
     Bench(BenchArgs),
@@ -238,6 +240,19 @@ pub struct CheckArgs {
     /// Print JSON instead of text.
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    /// A CAD file.
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// The file to write; its name ends in .json.
+    #[arg(short, long, value_name = "OUT.json")]
+    pub output: PathBuf,
+    /// Make every face an island, with edges of its own that it shares with no other face.
+    #[arg(long)]
+    pub unsewn: bool,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,7 @@
 mod args;
 mod bench;
 mod check;
+mod convert;
 mod exit;
 mod guard;
 mod info;
@@ -35,6 +36,7 @@ fn run() -> Exit {
         Command::Mesh(args) => mesh::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Bench(args) => bench::run(&args),
     }
 }

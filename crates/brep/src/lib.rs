@@ -8,6 +8,7 @@ mod assembly;
 mod ids;
 mod part;
 mod source;
+mod unsewn;
 
 pub use assembly::{Model, Node, Placement};
 pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};

@@ -19,6 +19,7 @@ mod against;
 mod analytic;
 mod auditing;
 mod check;
+mod convert;
 mod edge_count;
 mod error;
 mod gaps;
@@ -38,6 +39,7 @@ mod whole_file;
 
 pub use against::{AgainstReport, WorstFace};
 pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
+pub use convert::{ConvertOptions, Converted, convert};
 pub use error::JobError;
 pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};
 pub use job::{Job, MeshedPart, Outcome, mesh_parts, read_model, run, thread_pool};
@@ -53,6 +55,7 @@ pub use whole_file::write_whole;
 
 pub use chordal_audit as audit;
 pub use chordal_brep as brep;
+pub use chordal_document as document;
 pub use chordal_mesh as mesh;
 pub use chordal_nurbs as nurbs;
 pub use chordal_read as read;

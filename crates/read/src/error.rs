@@ -10,6 +10,8 @@ pub enum ReadError {
     Empty { name: String },
     #[error("{name} is not a STEP file: it does not begin with ISO-10303-21")]
     UnknownFormat { name: String },
+    #[error("{name} is {format} that cannot be read: {problem}")]
+    Unreadable { name: String, format: &'static str, problem: String },
     #[error("{name} has no DATA section (the file ends at line {line})")]
     NoData { name: String, line: u32 },
     #[error("{name} has no entities in its DATA section (line {line})")]

@@ -4,6 +4,7 @@
 //! one of the model's warnings, a face that cannot be understood a failed face.
 
 mod error;
+mod json;
 mod step;
 #[allow(dead_code, reason = "the readers that use all of it are on their way")]
 mod trimmed;
@@ -45,4 +46,7 @@ struct Format {
 }
 
 /// In the order in which they are tried: the surest signs first.
-const FORMATS: &[Format] = &[Format { looks_like: step::looks_like_step, read: step::read }];
+const FORMATS: &[Format] = &[
+    Format { looks_like: step::looks_like_step, read: step::read },
+    Format { looks_like: json::looks_like_json, read: json::read },
+];

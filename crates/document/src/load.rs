@@ -1,0 +1,76 @@
+//! A model out of the document's form: the tree, and the parts that it places.
+
+use crate::load_geometry::{Sound, p3};
+use crate::load_part::part;
+use crate::schema::{Document, Node, Source, Warning};
+use crate::{DocumentError, real::Real};
+use chordal_brep as brep;
+use chordal_nurbs::{DAffine3, DVec3};
+
+/// Trees are walked by recursion in places; deeper ones are meant to break something.
+const MAX_DEPTH: usize = 1000;
+
+pub(crate) fn source((entity, line): Source) -> brep::Source {
+    brep::Source { entity, line }
+}
+
+pub(crate) fn model(document: Document) -> Result<brep::Model, DocumentError> {
+    let mut warnings: Vec<_> = document.warnings.into_iter().map(warning).collect();
+    let parts: Vec<_> = document.parts.into_iter().map(|p| part(p, &mut warnings)).collect();
+    let bad = |node: usize, why: &'static str| DocumentError::Tree { node, why };
+    let mut nodes = Vec::with_capacity(document.nodes.len());
+    for (i, written) in document.nodes.into_iter().enumerate() {
+        if written.part.is_some_and(|p| p as usize >= parts.len()) {
+            return Err(bad(i, "places a part that is not there"));
+        }
+        nodes.push(node(written).map_err(|_| bad(i, "has a transform that is not finite"))?);
+    }
+    let roots: Vec<_> = document.roots.into_iter().map(brep::NodeId).collect();
+    check_tree(&nodes, &roots)?;
+    Ok(brep::Model {
+        name: document.name,
+        schema: document.format,
+        unit: document.unit,
+        parts,
+        nodes,
+        roots,
+        warnings,
+    })
+}
+
+/// Every node is reached once at most, so that a walk ends.
+fn check_tree(nodes: &[brep::Node], roots: &[brep::NodeId]) -> Result<(), DocumentError> {
+    let mut reached = vec![false; nodes.len()];
+    let mut stack: Vec<_> = roots.iter().map(|&root| (root, 0)).collect();
+    while let Some((id, depth)) = stack.pop() {
+        let bad = |why| Err(DocumentError::Tree { node: id.index(), why });
+        match reached.get_mut(id.index()) {
+            None => return bad("is not there"),
+            Some(true) => return bad("is used twice"),
+            Some(_) if depth >= MAX_DEPTH => return bad("is nested too deeply"),
+            Some(once) => *once = true,
+        }
+        stack.extend(nodes[id.index()].children.iter().map(|&child| (child, depth + 1)));
+    }
+    Ok(())
+}
+
+fn node(node: Node) -> Sound<brep::Node> {
+    let [x, y, z, translation]: [DVec3; 4] = {
+        let axis = |p: [Real; 3]| p3(p, "the transform");
+        let [a, b, c, d] = node.transform;
+        [axis(a)?, axis(b)?, axis(c)?, axis(d)?]
+    };
+    Ok(brep::Node {
+        name: node.name,
+        transform: DAffine3::from_cols(x, y, z, translation),
+        part: node.part.map(brep::PartId),
+        children: node.children.into_iter().map(brep::NodeId).collect(),
+        color: node.color.map(brep::Color),
+        source: source(node.source),
+    })
+}
+
+fn warning(warning: Warning) -> brep::Warning {
+    brep::Warning { source: source(warning.source), message: warning.message, lost: warning.lost }
+}
