@@ -1,6 +1,7 @@
 //! One face: chart → boundary triangulation → points inside → proof, with requests to edges where they are too coarse.
 
 use crate::chart::{FaceContext, Key, Segment};
+use crate::crossings::coarse_chords;
 use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Bound, Cancel, Options};
 use crate::place::Rows;
@@ -138,8 +139,11 @@ impl<'a, 's> FaceWork<'a, 's> {
         let triangles = match boundary_triangles(&points, &chart, shape) {
             Ok(triangles) => triangles,
             Err(culprits) => {
-                let ears = if context.last_resort { clip_ears(&points, &chart.loops) } else { None };
-                let Some(ears) = ears else { return finer_or_fail(&chart, &culprits).map(Attempt::Over) };
+                let coarse = coarse_chords(context, &chart, &culprits);
+                if !context.last_resort && !coarse.is_empty() {
+                    return Ok(Attempt::Over(Outcome::Finer(coarse)));
+                }
+                let ears = clip_ears(&points, &chart.loops).ok_or("its loops cross each other")?;
                 clipped = true;
                 ears
             }
@@ -523,22 +527,4 @@ fn boundary_triangles(points: &[DVec2], chart: &Chart, shape: Shape) -> Result<V
         sweep(points, &chart.loops)
     };
     result.map_err(|e| vec![e.edge, e.vertex])
-}
-
-/// Chords near a place where loops cross, as a request; where none can be split, a failure.
-fn finer_or_fail(chart: &Chart, culprits: &[u32]) -> Result<Outcome, String> {
-    let mut chords = Vec::new();
-    for &v in culprits {
-        let Some(&(start, end)) = chart.loops.iter().find(|&&(s, e)| (s..e).contains(&v)) else { continue };
-        let before = if v == start { end - 1 } else { v - 1 };
-        for i in [before, v] {
-            if let Segment::Edge { edge, chord } = chart.points[i as usize].segment {
-                chords.push((edge, chord));
-            }
-        }
-    }
-    if chords.is_empty() {
-        return Err("its loops cross each other".into());
-    }
-    Ok(Outcome::Finer(chords))
 }

@@ -1,0 +1,141 @@
+//! Loops that cross in the chart: which chords are too coarse, and which loops cross in truth.
+//!
+//! ```text
+//!        ___c___                 Two chords cross. The curve over a–b bulges by β; where c lies within β of a–b, a finer a–b may
+//!   a __/   |   \__ b            pass on the other side of it. Where no end of either chord lies within the other's bulge, finer
+//!     ──────┼──────              chords cross, too: the file's loops do.
+//!           d
+//! ```
+//!
+//! The bulge is measured where it counts, on the surface: how far the surface over the middle of a chord's parameters is
+//! from the curve's middle, less what the edge lies off the surface at both ends.
+
+use crate::chart::{FaceContext, Segment};
+use crate::triangulate::orient;
+use crate::unroll::Chart;
+use chordal_nurbs::{DVec2, DVec3};
+
+/// The curve may bulge more beside its middle.
+const BULGE_MARGIN: f64 = 2.0;
+
+/// Bulges below this share of the chord are straight lines and rounding.
+const STRAIGHT: f64 = 1e-9;
+
+/// Loops with more points than this are not searched for crossings.
+const MAX_POINTS: usize = 50_000;
+
+/// One segment of a loop.
+struct Side {
+    uv: [DVec2; 2],
+    xyz: [DVec3; 2],
+    segment: Segment,
+    bulge: f64,
+}
+
+/// The chords to split so that loops of the chart may cease to cross; empty where they cross in truth. `culprits` are chart
+/// points near a place where a triangulation failed, for loops that only touch.
+pub(crate) fn coarse_chords(
+    context: &FaceContext<'_, '_>,
+    chart: &Chart,
+    culprits: &[u32],
+) -> Vec<(u32, u32)> {
+    let mut coarse = Vec::new();
+    let mut crossings = 0;
+    if chart.points.len() <= MAX_POINTS {
+        let sides = sides(context, chart);
+        for (i, j) in crossing_pairs(&sides) {
+            crossings += 1;
+            for (side, other) in [(&sides[i], &sides[j]), (&sides[j], &sides[i])] {
+                let Segment::Edge { edge, chord } = side.segment else { continue };
+                let near = other.xyz.iter().any(|&p| distance_to(p, side.xyz) <= BULGE_MARGIN * side.bulge);
+                if side.bulge > 0.0 && near {
+                    coarse.push((edge, chord));
+                }
+            }
+        }
+    }
+    if crossings == 0 {
+        coarse.extend(beside(context, chart, culprits));
+    }
+    coarse.sort_unstable();
+    coarse.dedup();
+    coarse
+}
+
+/// The curved chords that meet at these points.
+fn beside(context: &FaceContext<'_, '_>, chart: &Chart, culprits: &[u32]) -> Vec<(u32, u32)> {
+    let mut chords = Vec::new();
+    for &v in culprits {
+        let Some(&(start, end)) = chart.loops.iter().find(|&&(s, e)| (s..e).contains(&v)) else { continue };
+        let before = if v == start { end - 1 } else { v - 1 };
+        for (i, next) in [(before, v), (v, if v + 1 == end { start } else { v + 1 })] {
+            let side = side(context, chart, i as usize, next as usize);
+            if let Segment::Edge { edge, chord } = side.segment
+                && side.bulge > 0.0
+            {
+                chords.push((edge, chord));
+            }
+        }
+    }
+    chords
+}
+
+fn sides(context: &FaceContext<'_, '_>, chart: &Chart) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(chart.points.len());
+    for &(start, end) in &chart.loops {
+        let (start, end) = (start as usize, end as usize);
+        sides.extend((start..end).map(|i| side(context, chart, i, if i + 1 == end { start } else { i + 1 })));
+    }
+    sides
+}
+
+fn side(context: &FaceContext<'_, '_>, chart: &Chart, i: usize, next: usize) -> Side {
+    let uv = [chart.points[i].uv, chart.points[next].uv];
+    let xyz = uv.map(|uv| context.surface.point(uv));
+    let segment = chart.points[i].segment;
+    let bulge = match segment {
+        Segment::Edge { edge, chord } => {
+            let samples = &context.edges[edge as usize];
+            let k = chord as usize;
+            let ends = (samples.points[k], samples.points[k + 1]);
+            let off = 0.5 * ((xyz[0] + xyz[1]) - (ends.0 + ends.1));
+            let curve = context.part.edges[edge as usize].curve.as_deref();
+            let middle = curve.map(|c| c.point(0.5 * (samples.t[k] + samples.t[k + 1])));
+            let lifted = context.surface.point(uv[0].midpoint(uv[1]));
+            middle.map_or(0.0, |middle| (lifted - middle - off).length())
+        }
+        Segment::Seam | Segment::Pole => 0.0,
+    };
+    let straight = bulge <= STRAIGHT * xyz[0].distance(xyz[1]);
+    Side { uv, xyz, segment, bulge: if straight { 0.0 } else { bulge } }
+}
+
+fn distance_to(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
+    let d = b - a;
+    let along = ((p - a).dot(d) / d.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    p.distance(a + d * along)
+}
+
+/// Sides that cross between their ends, found along x.
+fn crossing_pairs(sides: &[Side]) -> Vec<(usize, usize)> {
+    let low = |i: usize| sides[i].uv[0].min(sides[i].uv[1]);
+    let high = |i: usize| sides[i].uv[0].max(sides[i].uv[1]);
+    let mut order: Vec<usize> = (0..sides.len()).collect();
+    order.sort_unstable_by(|&i, &j| low(i).x.total_cmp(&low(j).x).then(i.cmp(&j)));
+    let mut pairs = Vec::new();
+    for (k, &i) in order.iter().enumerate() {
+        let (low_i, high_i) = (low(i), high(i));
+        for &j in order[k + 1..].iter().take_while(|&&j| low(j).x <= high_i.x) {
+            if low(j).y <= high_i.y && high(j).y >= low_i.y && cross(sides[i].uv, sides[j].uv) {
+                pairs.push((i, j));
+            }
+        }
+    }
+    pairs
+}
+
+/// True where two segments cross between their ends.
+fn cross([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    let apart = |x: f64, y: f64| x > 0.0 && y < 0.0 || x < 0.0 && y > 0.0;
+    apart(orient(a, b, c), orient(a, b, d)) && apart(orient(c, d, a), orient(c, d, b))
+}
