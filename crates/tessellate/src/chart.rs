@@ -76,6 +76,15 @@ struct Run {
     poles: [bool; 2],
 }
 
+impl Run {
+    fn reverse(&mut self) {
+        self.uv.reverse();
+        self.keys.reverse();
+        self.chords.reverse();
+        self.poles.reverse();
+    }
+}
+
 impl FaceContext<'_, '_> {
     /// All loops of the face with the interior on their left in the chart, and the vertices of vertex loops.
     ///
@@ -127,32 +136,48 @@ impl FaceContext<'_, '_> {
         uv
     }
 
-    fn run(&self, coedge: &Coedge, near: Option<DVec2>) -> Option<Run> {
+    /// The runs of a coedge in the direction of the loop: one, or as many as poles on the way cut it into.
+    fn runs(&self, coedge: &Coedge, near: Option<DVec2>) -> Vec<Run> {
         let edge = &self.part.edges[coedge.edge.index()];
         let samples = &self.edges[coedge.edge.index()];
         let n = samples.sag.len();
         if n == 0 {
-            return None;
+            return Vec::new();
         }
         let id = coedge.edge.0;
         let mut keys: Vec<Key> = (0..=n as u32).map(|i| Key::Edge(id, i)).collect();
         keys[0] = Key::Vertex(edge.start.0);
         keys[n] = Key::Vertex(edge.end.0);
-        let mut chords: Vec<Segment> = (0..n as u32).map(|chord| Segment::Edge { edge: id, chord }).collect();
-        let at_pole = |p: DVec3| self.surface.pole_at(p, self.resolution).is_some();
-        let mut poles = [at_pole(samples.points[0]), at_pole(samples.points[n])];
-        let mut uv = self.edge_uv(coedge, samples, near);
-        self.continue_turns(&mut uv);
-        if poles[0] || poles[1] {
-            self.settle_poles(&mut uv, &samples.points, poles);
+        let at_pole = |i: usize| self.surface.pole_at(samples.points[i], self.resolution).is_some();
+        let mut cuts = vec![0];
+        if !self.surface.poles.is_empty() {
+            cuts.extend((1..n).filter(|&i| at_pole(i) && !at_pole(i - 1) && !at_pole(i + 1)));
         }
+        cuts.push(n);
+        let uv = self.edge_uv(coedge, samples, near);
+        let run = |cut: &[usize]| {
+            let (from, to) = (cut[0], cut[1]);
+            let chord = |i: usize| Segment::Edge { edge: id, chord: i as u32 };
+            let mut run = Run {
+                uv: uv[from..=to].to_vec(),
+                keys: keys[from..=to].to_vec(),
+                chords: (from..to).map(chord).collect(),
+                poles: [at_pole(from), at_pole(to)],
+            };
+            self.continue_turns(&mut run.uv);
+            if run.poles != [false, false] {
+                self.settle_poles(&mut run.uv, &samples.points[from..=to], run.poles);
+            }
+            if !coedge.forward {
+                run.reverse();
+            }
+            run
+        };
+        let mut runs: Vec<Run> = cuts.windows(2).map(run).collect();
         if !coedge.forward {
-            uv.reverse();
-            keys.reverse();
-            chords.reverse();
-            poles.reverse();
+            runs.reverse();
         }
-        Some(Run { uv, keys, chords, poles })
+        runs
     }
 
     /// Parameters of the samples, in the direction of the edge.
@@ -253,18 +278,14 @@ impl FaceContext<'_, '_> {
         let mut runs: Vec<Run> = Vec::with_capacity(coedges.len());
         let mut near = None;
         for coedge in coedges {
-            match self.run(coedge, near) {
-                Some(run) => {
-                    near = run.uv.last().copied();
-                    runs.push(run);
-                }
-                // Only an edge that is a single point has no chords.
-                None if self.part.edges[coedge.edge.index()].curve.is_some() => {
-                    let source = self.part.edges[coedge.edge.index()].source;
-                    return Err(format!("its edge {source} cannot be sampled"));
-                }
-                None => {}
+            let of_edge = self.runs(coedge, near);
+            // Only an edge that is a single point has no chords.
+            if of_edge.is_empty() && self.part.edges[coedge.edge.index()].curve.is_some() {
+                let source = self.part.edges[coedge.edge.index()].source;
+                return Err(format!("its edge {source} cannot be sampled"));
             }
+            near = of_edge.last().and_then(|run| run.uv.last().copied()).or(near);
+            runs.extend(of_edge);
         }
         if runs.is_empty() {
             return Ok(None);

@@ -7,7 +7,7 @@
 use crate::metric::{Limits, Sizing};
 use crate::surface::FaceSurface;
 use chordal_brep::{Edge, Part, Pcurve};
-use chordal_nurbs::{Curve, CurveJet, DVec2, DVec3, Range};
+use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range};
 
 /// One edge as a polyline.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,7 +54,7 @@ impl EdgeSamples {
         let least = if edge.start == edge.end { least.max(3) } else { least };
         let mut samples = Self::default();
         samples.t.push(edge.range.start);
-        for smooth in smooth_ranges(curve, edge.range) {
+        for smooth in smooth_ranges(curve, edge.range, &poles_on_the_way(curve, edge.range, uses)) {
             samples.add_smooth(curve, smooth, uses, limits);
         }
         while samples.t.len() < least + 1 {
@@ -133,14 +133,38 @@ fn halved(t: &[f64]) -> Vec<f64> {
     split_where(t, |_, _| true)
 }
 
-/// Cuts a range at the corners of the curve.
-fn smooth_ranges(curve: &Curve, range: Range) -> Vec<Range> {
+/// Parameters at which the curve runs through a pole of a surface: there charts jump, so there must be a sample.
+fn poles_on_the_way(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Vec<f64> {
+    let mut found = Vec::new();
+    for EdgeUse { surface, .. } in uses {
+        let at_end = |p: DVec3| {
+            [range.start, range.end].iter().any(|&t| curve.point(t).distance(p) <= surface.resolution)
+        };
+        for pole in surface.poles.iter().filter(|pole| !at_end(pole.point)) {
+            let reach = curve.bbox(range);
+            if pole.point.clamp(reach.min, reach.max).distance(pole.point) > surface.resolution {
+                continue;
+            }
+            let nearest = CurveInverter::new(curve, range).invert(pole.point, None);
+            if nearest.distance <= surface.resolution {
+                found.push(nearest.t);
+            }
+        }
+    }
+    found
+}
+
+/// Cuts a range at the corners of the curve and at `stops`.
+fn smooth_ranges(curve: &Curve, range: Range, stops: &[f64]) -> Vec<Range> {
+    let step = 1e-7 * range.length();
+    let is_corner = |&t: &f64| curve.jet(t - step).d1.angle_between(curve.jet(t + step).d1) > CORNER;
+    let mut cuts: Vec<f64> =
+        curve.breaks(range).into_iter().filter(is_corner).chain(stops.iter().copied()).collect();
+    cuts.sort_unstable_by(f64::total_cmp);
     let mut start = range.start;
     let mut ranges = Vec::with_capacity(1);
-    for t in curve.breaks(range) {
-        let step = 1e-7 * range.length();
-        let (before, after) = (curve.jet(t - step).d1, curve.jet(t + step).d1);
-        if before.angle_between(after) > CORNER && t > start && t < range.end {
+    for t in cuts {
+        if t > start + step && t < range.end - step {
             ranges.push(Range::new(start, t));
             start = t;
         }

@@ -239,9 +239,28 @@ impl<'a, 's> FaceWork<'a, 's> {
         )
     }
 
-    /// The normal by which edges turn; zero at poles.
-    pub fn turning_normal(&self, vertex: u32) -> DVec3 {
-        if self.at_pole[vertex as usize] { DVec3::ZERO } else { self.normals[vertex as usize] }
+    /// The normals by which the edges of a triangle turn: those that its corners are written with.
+    pub fn turning_normals(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        let mut normals = triangle.map(|v| self.normals[v as usize]);
+        if let Some((i, uv)) = self.pole_corner(triangle) {
+            normals[i] = self.context.surface.normal(uv);
+        }
+        normals
+    }
+
+    /// The corner of a triangle that lies on a pole, and the place just beside the pole that it is seen from between its other
+    /// two: that is where its normal belongs.
+    fn pole_corner(&self, triangle: [u32; 3]) -> Option<(usize, DVec2)> {
+        let i = (0..3).find(|&i| self.at_pole[triangle[i] as usize])?;
+        let corner = triangle[i] as usize;
+        let pole = self.context.surface.pole_at(self.xyz[corner], self.context.resolution)?;
+        let along = 1 - pole.axis;
+        let [a, b] = [1, 2].map(|k| self.mesh.points[triangle[(i + k) % 3] as usize]);
+        let mut uv = self.mesh.points[corner];
+        uv[along] = 0.5 * (a[along] + b[along]);
+        // Just inside: on the pole itself rounding decides which side the normal is taken from.
+        uv[pole.axis] += BESIDE_POLE * (a.midpoint(b)[pole.axis] - uv[pole.axis]);
+        Some((i, uv))
     }
 
     /// True where a triangle runs clockwise in the chart.
@@ -328,26 +347,15 @@ impl<'a, 's> FaceWork<'a, 's> {
         })
     }
 
-    /// Gives each triangle at a pole a corner of its own there, seen from between its other two: that is where its normal
-    /// at the pole belongs. Returns how far these corners lie off the pole's vertex.
+    /// Gives each triangle at a pole a corner of its own there. Returns how far these corners lie off the pole's vertex.
     fn turn_pole_corners(&mut self, triangles: &mut [[u32; 3]], keys: &mut Vec<Key>) -> f64 {
         let mut gap = 0.0f64;
         if !self.at_pole.contains(&true) {
             return gap;
         }
         for triangle in triangles {
-            let Some(i) = (0..3).find(|&i| self.at_pole[triangle[i] as usize]) else { continue };
+            let Some((i, uv)) = self.pole_corner(*triangle) else { continue };
             let pole_corner = triangle[i] as usize;
-            let Some(pole) = self.context.surface.pole_at(self.xyz[pole_corner], self.context.resolution)
-            else {
-                continue;
-            };
-            let along = 1 - pole.axis;
-            let [a, b] = [1, 2].map(|k| self.mesh.points[triangle[(i + k) % 3] as usize]);
-            let mut uv = self.mesh.points[pole_corner];
-            uv[along] = 0.5 * (a[along] + b[along]);
-            // Just inside: on the pole itself rounding decides which side the normal is taken from.
-            uv[pole.axis] += BESIDE_POLE * (a.midpoint(b)[pole.axis] - uv[pole.axis]);
             triangle[i] = self.mesh.points.len() as u32;
             keys.push(keys[pole_corner]);
             self.mesh.points.push(uv);

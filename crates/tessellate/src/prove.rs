@@ -218,8 +218,9 @@ impl<'a> Prover<'a> {
             let inner = || Fault::Fold(longest_inner(work, t, &facet));
             return (f64::INFINITY, coarse.map_or_else(inner, Fault::Edge));
         }
+        let normals = work.turning_normals(corners);
         for i in 0..3 {
-            let [n, m] = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| work.turning_normal(v));
+            let [n, m] = [normals[(i + 1) % 3], normals[(i + 2) % 3]];
             let length =
                 work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);
             let turns = length > TURN_LENGTH * tolerance && turns_too_far(n, m, self.limits.angle);
@@ -244,6 +245,12 @@ impl<'a> Prover<'a> {
         let agree = n.dot(m).min(m.dot(k)).min(k.dot(n)) > 0.3;
         (agree && height > FOLD_HEIGHT * self.limits.tolerance && (n + m + k).dot(cross) < 0.0)
             .then_some(height)
+    }
+
+    /// True where an edge of this triangle turns too far.
+    fn turns(&self, work: &FaceWork<'_, '_>, corners: [u32; 3]) -> bool {
+        let [n, m, k] = work.turning_normals(corners);
+        [(n, m), (m, k), (k, n)].iter().any(|&(n, m)| turns_too_far(n, m, self.limits.angle))
     }
 
     fn boundary_segment(&self, work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<Segment> {
@@ -324,8 +331,7 @@ impl<'a> Prover<'a> {
             // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
             let first = facet([apex, a, apex2], [outer[1][(j + 1) % 3], None, outer[0][(i + 2) % 3]]);
             let second = facet([apex, apex2, b], [outer[1][(j + 2) % 3], outer[0][(i + 1) % 3], None]);
-            let turn =
-                turns_too_far(work.turning_normal(apex), work.turning_normal(apex2), self.limits.angle);
+            let turn = [[apex, a, apex2], [apex, apex2, b]].iter().any(|&corners| self.turns(work, corners));
             let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
             let tolerance = self.limits.tolerance;
             let folds = |corners: [u32; 3], xyz| {

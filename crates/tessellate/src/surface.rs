@@ -8,6 +8,8 @@ pub(crate) struct FaceSurface<'a> {
     pub surface: &'a Surface,
     pub periods: [Option<f64>; 2],
     pub poles: Vec<Pole>,
+    /// Points nearer together than this are one point.
+    pub resolution: f64,
     wrap: Wrap,
     inverter: OnceLock<SurfaceInverter<'a>>,
 }
@@ -19,6 +21,7 @@ impl<'a> FaceSurface<'a> {
             surface,
             periods: surface.periods(),
             poles: surface.poles_within(point),
+            resolution: point,
             wrap: Wrap::of(surface),
             inverter: OnceLock::new(),
         }
