@@ -3,6 +3,8 @@
 //! The format is recognised by content. Everything that can be saved arrives: what was repaired or left out becomes
 //! one of the model's warnings, a face that cannot be understood a failed face.
 
+mod brep_text;
+mod build;
 mod error;
 mod json;
 mod step;
@@ -49,4 +51,5 @@ struct Format {
 const FORMATS: &[Format] = &[
     Format { looks_like: step::looks_like_step, read: step::read },
     Format { looks_like: json::looks_like_json, read: json::read },
+    Format { looks_like: brep_text::looks_like_brep, read: brep_text::read },
 ];

@@ -95,23 +95,6 @@ impl KnotVector {
     }
 }
 
-/// Replaces weights of zero; true where there were any.
-///
-/// A control point of weight zero has no effect on the curve, yet the homogeneous form needs it somewhere. A weight
-/// of 1e-13 of the largest moves the curve by about 1e-13 of the control net's size: less than rounding does.
-pub(crate) fn replace_zero_weights(weights: &mut [f64]) -> bool {
-    let largest = weights.iter().fold(0.0f64, |most, w| most.max(w.abs()));
-    let zero = weights.iter_mut().filter(|w| **w == 0.0);
-    let mut any = false;
-    if largest > 0.0 && largest.is_finite() {
-        for weight in zero {
-            *weight = 1e-13 * largest;
-            any = true;
-        }
-    }
-    any
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

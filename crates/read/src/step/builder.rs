@@ -4,6 +4,7 @@ use super::document::{Bad, Doc, Ix, Res};
 use super::geometry::Geometry;
 use super::styles::Styles;
 use super::units::Units;
+use crate::build::merge_vertices;
 use chordal_brep::{Color, EdgeId, Part, Source, Vertex, VertexId};
 use chordal_nurbs::{Curve2, DVec3, Range};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -73,7 +74,7 @@ impl<'d> Builder<'d> {
 
     /// The finished part.
     pub(crate) fn finish(mut self) -> Part {
-        self.merge_vertices();
+        merge_vertices(&mut self.part, &self.same);
         self.part
     }
 
@@ -103,36 +104,6 @@ impl<'d> Builder<'d> {
     pub(crate) fn merge(&mut self, a: VertexId, b: VertexId) {
         if a != b {
             self.same.push((a.min(b), a.max(b)));
-        }
-    }
-
-    fn merge_vertices(&mut self) {
-        if self.same.is_empty() {
-            return;
-        }
-        let mut parent: Vec<u32> = (0..self.part.vertices.len() as u32).collect();
-        let root = |parent: &mut Vec<u32>, mut v: u32| {
-            while parent[v as usize] != v {
-                parent[v as usize] = parent[parent[v as usize] as usize];
-                v = parent[v as usize];
-            }
-            v
-        };
-        for &(a, b) in &self.same {
-            let (a, b) = (root(&mut parent, a.0), root(&mut parent, b.0));
-            parent[a.max(b) as usize] = a.min(b);
-        }
-        let mut renamed = |v: &mut VertexId| v.0 = root(&mut parent, v.0);
-        for edge in &mut self.part.edges {
-            renamed(&mut edge.start);
-            renamed(&mut edge.end);
-        }
-        for boundary in self.part.faces.iter_mut().flat_map(|face| &mut face.loops) {
-            match boundary {
-                chordal_brep::Loop::Vertex(v) => renamed(v),
-                chordal_brep::Loop::Polygon { vertices, .. } => vertices.iter_mut().for_each(&mut renamed),
-                chordal_brep::Loop::Edges { .. } => {}
-            }
         }
     }
 

@@ -1,10 +1,11 @@
 //! Curves in space.
 
 use super::args::{Args, Kind};
-use super::bspline::{Knots, replace_zero_weights};
+use super::bspline::Knots;
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
+use crate::build::replace_zero_weights;
 use chordal_nurbs::{CompositeSegment, Curve, DVec3, NurbsCurve, NurbsCurve3, Range, Vector};
 use std::f64::consts::TAU;
 

@@ -1,10 +1,11 @@
 //! Surfaces.
 
 use super::args::{Args, Kind};
-use super::bspline::{Knots, replace_zero_weights};
+use super::bspline::Knots;
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
+use crate::build::replace_zero_weights;
 use chordal_nurbs::{DVec3, NurbsSurface, Surface};
 
 /// The parts of a spline surface as an entity states them.
