@@ -47,14 +47,24 @@ fn failed(model: &Model) -> Vec<String> {
 
 #[test]
 fn every_face_arrives() {
+    every_face_of("step");
+}
+
+#[test]
+fn every_face_of_brep_files_arrives() {
+    every_face_of("brep");
+}
+
+/// Every file of one kind has the faces of the index, none of them failed, and is sound.
+fn every_face_of(kind: &str) {
     let Some(folder) = folder() else { return };
     let index = std::fs::read_to_string(folder.join("INDEX.tsv")).expect("the index is readable");
     let mut wrong = Vec::new();
     let mut files = 0;
-    for row in index.lines().map(|line| line.split('\t').collect::<Vec<_>>()).filter(|row| row[0] == "step") {
+    for row in index.lines().map(|line| line.split('\t').collect::<Vec<_>>()).filter(|row| row[0] == kind) {
         let name = row[1];
         let reference: usize = row[6].parse().expect("a number of faces");
-        let model = match chordal_read::read_file(folder.join("step").join(name)) {
+        let model = match chordal_read::read_file(folder.join(kind).join(name)) {
             Ok(model) => model,
             Err(error) => {
                 wrong.push(format!("{name}: {error}"));
@@ -74,7 +84,7 @@ fn every_face_arrives() {
         }
         sound(name, &model, &mut wrong);
     }
-    assert!(files > 0, "the index lists no STEP files");
+    assert!(files > 0, "the index lists no {kind} files");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

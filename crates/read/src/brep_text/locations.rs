@@ -121,7 +121,7 @@ impl Locations {
                         break;
                     }
                     let power = tokens.integer()?;
-                    product = product.and_then(|left| self.times(left, number, power));
+                    product = product.and_then(|product| self.times(product, number, power));
                 }
                 product
             }
@@ -131,13 +131,14 @@ impl Locations {
         Ok(made.map(|_| ()))
     }
 
-    fn times(&mut self, left: Loc, number: i64, power: i64) -> Result<Loc, String> {
+    /// What comes later in the list stands further out.
+    fn times(&mut self, product: Loc, number: i64, power: i64) -> Result<Loc, String> {
         let factor = self.of_file(number).ok_or_else(|| format!("there is no location {number}"))?;
         if power.abs() > MOST_POWER {
             return Err(format!("the power of a location is {power}"));
         }
         let factor = if power < 0 { self.inverse(factor) } else { factor };
-        Ok((0..power.abs()).fold(left, |product, _| self.compose(product, factor)))
+        Ok((0..power.abs()).fold(product, |product, _| self.compose(factor, product)))
     }
 
     fn inverse(&mut self, loc: Loc) -> Loc {
@@ -176,7 +177,7 @@ mod tests {
 
     fn read(text: &str, count: usize) -> Locations {
         let mut all = Locations::new();
-        let mut tokens = Tokens::new(text.as_bytes());
+        let mut tokens = Tokens::new(text.as_bytes(), 1);
         for _ in 0..count {
             all.read_one(&mut tokens).expect("readable").expect("sound");
         }
@@ -185,7 +186,8 @@ mod tests {
 
     #[test]
     fn a_location_and_its_inverse_cancel() {
-        let mut all = read("1 1 0 0 5 0 1 0 0 0 0 1 0\n1 0 -1 0 0 1 0 0 0 0 0 1 0\n2 1 1 2 -1 0\n2 2 1 1 -1 0", 4);
+        let mut all =
+            read("1 1 0 0 5 0 1 0 0 0 0 1 0\n1 0 -1 0 0 1 0 0 0 0 0 1 0\n2 1 1 2 -1 0\n2 2 1 1 -1 0", 4);
         let (a, b) = (all.of_file(3).expect("known"), all.of_file(4).expect("known"));
         assert_eq!(all.compose(a, b), NOWHERE);
         let p = all.matrix(a).transform_point3(DVec3::X);

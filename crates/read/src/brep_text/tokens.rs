@@ -18,19 +18,14 @@ pub(crate) struct Tokens<'a> {
 }
 
 impl<'a> Tokens<'a> {
-    pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, line: 1 }
+    pub(crate) fn new(bytes: &'a [u8], line: u32) -> Self {
+        Self { bytes, at: 0, line }
     }
 
     /// The line of the next token.
     pub(crate) fn line(&mut self) -> u32 {
         self.skip_blanks();
         self.line
-    }
-
-    /// Bytes that are left.
-    pub(crate) fn left(&self) -> usize {
-        self.bytes.len() - self.at
     }
 
     fn skip_blanks(&mut self) {
@@ -163,7 +158,8 @@ impl<'a> Tokens<'a> {
 
 /// Words by which C libraries print what is no number.
 fn is_not_a_number(word: &[u8]) -> bool {
-    let starts = |prefix: &[u8]| word.len() >= prefix.len() && word[..prefix.len()].eq_ignore_ascii_case(prefix);
+    let starts =
+        |prefix: &[u8]| word.len() >= prefix.len() && word[..prefix.len()].eq_ignore_ascii_case(prefix);
     starts(b"nan") || starts(b"inf")
 }
 
@@ -173,7 +169,7 @@ mod tests {
 
     #[test]
     fn numbers_with_what_follows_them() {
-        let mut tokens = Tokens::new(b" 3  1 2CN 1\n nan 1.#QNAN -inf 1e-007 Curves");
+        let mut tokens = Tokens::new(b" 3  1 2CN 1\n nan 1.#QNAN -inf 1e-007 Curves", 1);
         assert_eq!((tokens.integer(), tokens.integer(), tokens.integer()), (Ok(3), Ok(1), Ok(2)));
         assert_eq!(tokens.continuity(), Ok(()));
         assert_eq!(tokens.integer(), Ok(1));
@@ -185,7 +181,7 @@ mod tests {
 
     #[test]
     fn sections_are_found_at_the_start_of_lines() {
-        let mut tokens = Tokens::new(b"x Surfaces 1\nSurfacesX\nSurfaces 2");
+        let mut tokens = Tokens::new(b"x Surfaces 1\nSurfacesX\nSurfaces 2", 1);
         assert!(tokens.seek("Surfaces"));
         assert_eq!((tokens.line(), tokens.word(), tokens.integer()), (3, &b"Surfaces"[..], Ok(2)));
         assert!(!tokens.seek("Surfaces"));

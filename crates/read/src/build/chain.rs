@@ -46,8 +46,7 @@ pub(crate) fn chained(
         }
         used[first] = true;
         let mut chain = vec![first];
-        let mut closed = false;
-        loop {
+        let closed = loop {
             let last = &coedges[chain[chain.len() - 1]];
             let end = ends(last).1;
             let candidates = starting.get(&end).into_iter().flatten().copied().filter(|&i| !used[i]);
@@ -59,18 +58,14 @@ pub(crate) fn chained(
                 Some((gap, _, i)) => {
                     let closing = jump(last, &coedges[first]);
                     if may_close && closing.is_finite() && closing <= gap {
-                        closed = true;
-                        break;
+                        break true;
                     }
                     used[i] = true;
                     chain.push(i);
                 }
-                None => {
-                    closed = may_close;
-                    break;
-                }
+                None => break may_close,
             }
-        }
+        };
         let chain = chain.into_iter().map(|i| coedges[i].clone()).collect();
         if closed { found.closed.push(chain) } else { found.open.push(chain) }
     }
