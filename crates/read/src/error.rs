@@ -8,7 +8,9 @@ pub enum ReadError {
     Io { path: String, source: std::io::Error },
     #[error("{name} is empty")]
     Empty { name: String },
-    #[error("{name} is of no known format: it is neither STEP (ISO-10303-21) nor BREP (CASCADE Topology) nor JSON")]
+    #[error(
+        "{name} is of no known format: it is neither STEP (ISO-10303-21) nor BREP (CASCADE Topology) nor JSON"
+    )]
     UnknownFormat { name: String },
     #[error("{name} is {format} that cannot be read: {problem}")]
     Unreadable { name: String, format: &'static str, problem: String },

@@ -191,7 +191,7 @@ mod tests {
         let (a, b) = (all.of_file(3).expect("known"), all.of_file(4).expect("known"));
         assert_eq!(all.compose(a, b), NOWHERE);
         let p = all.matrix(a).transform_point3(DVec3::X);
-        assert!(p.distance(DVec3::new(5.0, -1.0, 0.0)) < 1e-15, "{p}");
+        assert!(p.distance(DVec3::new(0.0, -6.0, 0.0)) < 1e-15, "{p}");
     }
 
     #[test]
