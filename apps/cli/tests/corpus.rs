@@ -15,13 +15,9 @@ const KNOWN: &[(&str, &str)] = &[
     ("torus_villarceau", "a loop winds round the torus both ways at once"),
     ("nested_loops", "two outer loops in one face: the second lies inside a hole of the first"),
     ("degree_100", "thin triangles; slow to evaluate"),
-    ("degree_mixed", "three points of one straight parameter line"),
-    ("knots_over_degree", "the surface is torn where a knot is repeated more than its degree"),
     ("weight_negative", "nothing is proven about weights that are not positive"),
     ("weight_range", "weights from 1e-3 to 1e3: triangles as thin as rounding"),
-    ("spline_forms", "a crease inside a face turns the normal at once"),
     ("offset_bspline", "nothing is proven about offsets of free surfaces"),
-    ("curve_kinds", "a crease inside a face turns the normal at once"),
 ];
 
 #[test]

@@ -1,5 +1,6 @@
 //! Surfaces, as CAD files define them.
 
+mod creases;
 mod offset;
 mod poles;
 mod swept;

@@ -54,7 +54,9 @@ impl EdgeSamples {
         let least = if edge.start == edge.end { least.max(3) } else { least };
         let mut samples = Self::default();
         samples.t.push(edge.range.start);
-        for smooth in smooth_ranges(curve, edge.range, &poles_on_the_way(curve, edge.range, uses)) {
+        let mut stops = poles_on_the_way(curve, edge.range, uses);
+        stops.extend(crease_crossings(curve, edge.range, uses));
+        for smooth in smooth_ranges(curve, edge.range, &stops) {
             samples.add_smooth(curve, smooth, uses, limits);
         }
         while samples.t.len() < least + 1 {
@@ -157,10 +159,13 @@ fn poles_on_the_way(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
 /// Cuts a range at the corners of the curve and at `stops`.
 fn smooth_ranges(curve: &Curve, range: Range, stops: &[f64]) -> Vec<Range> {
     let step = 1e-7 * range.length();
-    let is_corner = |&t: &f64| curve.jet(t - step).d1.angle_between(curve.jet(t + step).d1) > CORNER;
-    let mut cuts: Vec<f64> =
-        curve.breaks(range).into_iter().filter(is_corner).chain(stops.iter().copied()).collect();
-    cuts.sort_unstable_by(f64::total_cmp);
+    let mut cuts = curve.breaks(range);
+    cuts.retain(|&t| curve.jet(t - step).d1.angle_between(curve.jet(t + step).d1) > CORNER);
+    // A corner is mostly on a crease, too: there it is known best.
+    let known = |t: f64| cuts.iter().any(|c| (c - t).abs() <= step);
+    let new: Vec<f64> = stops.iter().copied().filter(|&t| !known(t)).collect();
+    cuts.extend(new);
+    cuts.sort_by(f64::total_cmp);
     let mut start = range.start;
     let mut ranges = Vec::with_capacity(1);
     for t in cuts {
@@ -171,6 +176,50 @@ fn smooth_ranges(curve: &Curve, range: Range, stops: &[f64]) -> Vec<Range> {
     }
     ranges.push(Range::new(start, range.end));
     ranges
+}
+
+/// Samples of an edge between which it crosses a crease at most once.
+const CROSSING_SAMPLES: usize = 64;
+
+/// Samples nearer to a crease than this many times what tells its sides apart are on it.
+const ALONG_CREASE: f64 = 1e4;
+
+/// Where the edge crosses creases of its faces: a crease needs a vertex there.
+fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Vec<f64> {
+    let mut found = Vec::new();
+    for one in uses.iter().filter(|u| u.surface.creases.iter().any(|c| !c.is_empty())) {
+        let at = |i: usize| range.start + range.length() * i as f64 / CROSSING_SAMPLES as f64;
+        let mut uv: Vec<DVec2> = Vec::with_capacity(CROSSING_SAMPLES + 1);
+        for i in 0..=CROSSING_SAMPLES {
+            uv.push(one.parameters(curve.point(at(i)), at(i), range, uv.last().copied()));
+        }
+        for (axis, creases) in one.surface.creases.iter().enumerate() {
+            for &value in creases {
+                let off = |p: DVec2| one.surface.offset_from(axis, value, p);
+                // An edge along the crease is on either side of it by rounding.
+                let rounding = ALONG_CREASE * one.surface.surface.beside_crease(axis, value);
+                for i in 0..CROSSING_SAMPLES {
+                    let (a, b) = (off(uv[i]), off(uv[i + 1]));
+                    let far = one.surface.periods[axis].is_some_and(|p| (a - b).abs() > 0.5 * p);
+                    if (a < 0.0) != (b < 0.0) && !far && a.abs().max(b.abs()) > rounding {
+                        let side = |t: f64| off(one.parameters(curve.point(t), t, range, Some(uv[i])));
+                        found.push(bisected(side, at(i), at(i + 1)));
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
+/// A sign change of `f` between `a` and `b`, to the last bits.
+fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+    let negative = f(a) < 0.0;
+    for _ in 0..52 {
+        let middle = 0.5 * (a + b);
+        if (f(middle) < 0.0) == negative { a = middle } else { b = middle }
+    }
+    0.5 * (a + b)
 }
 
 /// How many chords per parameter are needed, along one smooth piece.
@@ -257,17 +306,22 @@ fn own_rate(curve: &Curve, jet: &CurveJet, limits: &Limits) -> f64 {
 }
 
 impl EdgeUse<'_, '_> {
-    /// Chords per unit of parameter that the face asks for.
-    fn rate(&self, jet: &CurveJet, t: f64, range: Range, near: &mut Option<DVec2>, limits: &Limits) -> f64 {
-        if matches!(self.surface.surface, chordal_nurbs::Surface::Plane { .. }) {
-            return 0.0;
-        }
+    /// Where on the face the point at `t` lies: by the file, where it says so, else the nearest point's parameters.
+    fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<DVec2>) -> DVec2 {
         let from_file = self.pcurve.filter(|_| !self.surface.is_elementary()).map(|p| {
             let share = (t - range.start) / range.length();
             let own = p.range.start + share * p.range.length();
             p.curve.point(own)
         });
-        let uv = from_file.unwrap_or_else(|| self.surface.invert(jet.p, *near));
+        from_file.unwrap_or_else(|| self.surface.invert(p_xyz, near))
+    }
+
+    /// Chords per unit of parameter that the face asks for.
+    fn rate(&self, jet: &CurveJet, t: f64, range: Range, near: &mut Option<DVec2>, limits: &Limits) -> f64 {
+        if matches!(self.surface.surface, chordal_nurbs::Surface::Plane { .. }) {
+            return 0.0;
+        }
+        let uv = self.parameters(jet.p, t, range, *near);
         *near = Some(uv);
         let s = self.surface.jet(uv);
         let Some(sizing) = Sizing::new(&s, limits) else { return 0.0 };

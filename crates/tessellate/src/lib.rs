@@ -5,6 +5,7 @@
 //! A face that finds an edge too coarse asks for it; requests are merged per round and only the faces touched run again.
 
 mod chart;
+mod crease;
 mod crossings;
 mod edges;
 mod face;

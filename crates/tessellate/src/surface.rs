@@ -10,6 +10,8 @@ pub(crate) struct FaceSurface<'a> {
     pub poles: Vec<Pole>,
     /// Points nearer together than this are one point.
     pub resolution: f64,
+    /// Values of u and of v at which the normal turns at once.
+    pub creases: [Vec<f64>; 2],
     wrap: Wrap,
     inverter: OnceLock<SurfaceInverter<'a>>,
 }
@@ -22,6 +24,7 @@ impl<'a> FaceSurface<'a> {
             periods: surface.periods(),
             poles: surface.poles_within(point),
             resolution: point,
+            creases: surface.creases(),
             wrap: Wrap::of(surface),
             inverter: OnceLock::new(),
         }
@@ -81,6 +84,12 @@ impl<'a> FaceSurface<'a> {
         let turn =
             |t: f64, near: f64, period: Option<f64>| period.map_or(t, |p| t + p * ((near - t) / p).round());
         DVec2::new(turn(p_uv.x, near.x, self.periods[0]), turn(p_uv.y, near.y, self.periods[1]))
+    }
+
+    /// How far a coordinate lies beyond `value`, at the nearest turn of a closed direction.
+    pub fn offset_from(&self, axis: usize, value: f64, p_uv: DVec2) -> f64 {
+        let off = p_uv[axis] - value;
+        self.periods[axis].map_or(off, |p| off - p * (off / p).round())
     }
 
     /// The pole at this point of space, where there is one within `distance`.

@@ -53,6 +53,7 @@ impl Chart {
             None
         };
         let polygons = unroll.nest(outer, plain)?;
+        let polygons = unroll.cut_at_creases(polygons);
         let subdivided_poles = |polygon| unroll.subdivided_poles(polygon);
         let mut chart =
             Chart { private: unroll.private.clone(), reversed: unroll.reversed, ..Chart::default() };
@@ -65,8 +66,8 @@ impl Chart {
     }
 }
 
-struct Unroll<'a, 's> {
-    context: &'a FaceContext<'a, 's>,
+pub(crate) struct Unroll<'a, 's> {
+    pub context: &'a FaceContext<'a, 's>,
     limits: &'a Limits,
     seam_chord: f64,
     lone: Vec<u32>,
@@ -105,14 +106,14 @@ fn along_axis(axis: usize, value: f64) -> DVec2 {
 }
 
 impl Unroll<'_, '_> {
-    fn add_private(&mut self, p_uv: DVec2) -> Key {
+    pub fn add_private(&mut self, p_uv: DVec2) -> Key {
         self.private.push(self.context.surface.point(p_uv));
         Key::Private(self.private.len() as u32 - 1)
     }
 
     /// Points strictly between two chart points, as many as the metric asks for, and more where a chord strays further from
     /// the surface than its curvature at a few places promised.
-    fn between(&self, from: DVec2, to: DVec2) -> Vec<DVec2> {
+    pub fn between(&self, from: DVec2, to: DVec2) -> Vec<DVec2> {
         // Free surfaces may bend many times along a seam.
         let probes = if self.context.surface.is_elementary() { 16 } else { 96 };
         let d = (to - from) / probes as f64;
