@@ -6,9 +6,11 @@
 mod brep_text;
 mod build;
 mod error;
+mod inventor;
 mod json;
+#[allow(dead_code, reason = "the X3D reader, which uses all of it, is on its way")]
+mod scene;
 mod step;
-#[allow(dead_code, reason = "the readers that use all of it are on their way")]
 mod trimmed;
 
 use chordal_brep::Model;
@@ -52,4 +54,5 @@ const FORMATS: &[Format] = &[
     Format { looks_like: step::looks_like_step, read: step::read },
     Format { looks_like: json::looks_like_json, read: json::read },
     Format { looks_like: brep_text::looks_like_brep, read: brep_text::read },
+    Format { looks_like: inventor::looks_like_inventor, read: inventor::read },
 ];

@@ -46,11 +46,6 @@ impl Piece {
         let t = if share == 1.0 { self.range.end } else { self.range.start + share * self.range.length() };
         self.curve.point(t)
     }
-
-    fn reversed(mut self) -> Self {
-        self.forward = !self.forward;
-        self
-    }
 }
 
 /// What a loop is.

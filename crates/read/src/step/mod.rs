@@ -39,6 +39,7 @@ use document::Doc;
 use memchr::memmem;
 use products::Products;
 use styles::Styles;
+pub(crate) use styles::linear;
 use tree::Tree;
 
 /// The head of a file in which its format must show itself.

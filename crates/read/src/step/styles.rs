@@ -182,7 +182,7 @@ fn rgb(doc: &Doc<'_>, ix: Ix) -> Option<[f64; 3]> {
 }
 
 /// The sRGB transfer function, undone.
-fn linear(value: f64) -> f32 {
+pub(crate) fn linear(value: f64) -> f32 {
     let value = value.clamp(0.0, 1.0);
     (if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }) as f32
 }

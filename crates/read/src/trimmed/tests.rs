@@ -41,6 +41,13 @@ fn rectangle(a: [f64; 2], b: [f64; 2]) -> TrimLoop {
     TrimLoop { pieces, role: Role::ByNesting, source: Source::default() }
 }
 
+impl Piece {
+    fn reversed(mut self) -> Self {
+        self.forward = !self.forward;
+        self
+    }
+}
+
 fn backwards(mut trim: TrimLoop) -> TrimLoop {
     trim.pieces = trim.pieces.into_iter().rev().map(Piece::reversed).collect();
     trim

@@ -1,0 +1,41 @@
+//! What nodes change for the nodes after them.
+
+use crate::scene::graph::NodeIx;
+use chordal_brep::Color;
+use chordal_nurbs::DAffine3;
+
+/// The traversal state; a Separator gives its children a copy.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub transform: DAffine3,
+    pub shared: Shared,
+}
+
+/// What shapes are made of besides their place: two uses of a node under equal ones are the same part.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shared {
+    /// The node with coordinates.
+    pub coordinates: Option<NodeIx>,
+    pub profile_coordinates: Option<NodeIx>,
+    /// Trim loops of pieces: profile nodes, each with its coordinates.
+    pub profiles: Vec<Vec<(NodeIx, Option<NodeIx>)>>,
+    pub color: Option<Color>,
+    /// ShapeHints has polygons run clockwise.
+    pub clockwise: bool,
+    /// Metres of the unit that the last Units node set.
+    pub metres: f64,
+}
+
+impl State {
+    pub(super) fn new() -> Self {
+        let shared = Shared {
+            coordinates: None,
+            profile_coordinates: None,
+            profiles: Vec::new(),
+            color: None,
+            clockwise: false,
+            metres: 1.0,
+        };
+        Self { transform: DAffine3::IDENTITY, shared }
+    }
+}

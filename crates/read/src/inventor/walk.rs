@@ -1,0 +1,313 @@
+//! The walk through the graph, in the order in which Inventor renders it.
+
+use super::state::{Shared, State};
+use super::{shapes, surfaces};
+use crate::scene::graph::{Graph, Node, NodeIx};
+use crate::scene::matrix;
+use crate::scene::stage::{self, Placed, Stage};
+use crate::trimmed::Look;
+use chordal_brep::LooseKind;
+use chordal_nurbs::{DAffine3, DVec3};
+use glam::DQuat;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Uses within uses deeper than this refer in a circle.
+const MAX_DEPTH: u32 = 600;
+
+/// Fills the stage with the shapes of a graph.
+pub(super) fn walk(graph: &Graph, stage: &mut Stage) {
+    let mut walk = Walk {
+        graph,
+        stage,
+        uses: stage::uses(graph),
+        parts: FxHashMap::default(),
+        noted: FxHashSet::default(),
+        active: vec![false; graph.nodes.len()],
+        depth: 0,
+    };
+    let mut state = State::new();
+    for &root in &graph.roots {
+        walk.node(root, &mut state, "");
+    }
+}
+
+pub(super) struct Walk<'a> {
+    pub graph: &'a Graph,
+    pub stage: &'a mut Stage,
+    uses: Vec<u32>,
+    /// What nodes used more than once consist of, by the state they were used in.
+    parts: FxHashMap<NodeIx, Vec<(Shared, Vec<Placed>)>>,
+    /// Kinds of nodes about which something has been said.
+    noted: FxHashSet<String>,
+    /// Nodes being visited: one that is used inside itself would never end.
+    active: Vec<bool>,
+    depth: u32,
+}
+
+impl Walk<'_> {
+    /// Visits a node; `name` is that of the nearest named node above.
+    fn node(&mut self, ix: NodeIx, state: &mut State, name: &str) {
+        let graph = self.graph;
+        let node = graph.node(ix);
+        if self.depth >= MAX_DEPTH || !self.stage.afford(0, node.source()) {
+            return;
+        }
+        if std::mem::replace(&mut self.active[ix as usize], true) {
+            return self
+                .stage
+                .lose(node.source(), format!("{} is used inside itself; left out there", node.kind));
+        }
+        self.depth += 1;
+        let name = if node.name.is_empty() { name } else { readable(&node.name) };
+        if self.uses[ix as usize] > 1 && (is_separator(&node.kind) || is_shape(&node.kind)) {
+            self.used_often(ix, state, name);
+        } else {
+            self.visit(ix, state, name);
+        }
+        self.depth -= 1;
+        self.active[ix as usize] = false;
+    }
+
+    /// A node that is used more than once and changes nothing for its neighbours becomes a part.
+    fn used_often(&mut self, ix: NodeIx, state: &State, name: &str) {
+        let source = self.graph.node(ix).source();
+        let known =
+            self.parts.get(&ix).and_then(|all| all.iter().find(|(shared, _)| *shared == state.shared));
+        let placed = match known {
+            Some((_, placed)) => placed.clone(),
+            None => {
+                self.stage.open_part(name, source);
+                let mut inner = State { transform: DAffine3::IDENTITY, shared: state.shared.clone() };
+                self.visit(ix, &mut inner, name);
+                let placed = self.stage.close_part();
+                self.parts.entry(ix).or_default().push((state.shared.clone(), placed.clone()));
+                placed
+            }
+        };
+        self.stage.place(&placed, &state.transform, source);
+    }
+
+    fn visit(&mut self, ix: NodeIx, state: &mut State, name: &str) {
+        let graph = self.graph;
+        let node = graph.node(ix);
+        if shapes::read(self, node, state, name) || surfaces::read(self, ix, state, name) {
+            return;
+        }
+        if let Some(by) = transform(node) {
+            state.transform = state.transform * by;
+            return;
+        }
+        match node.kind.as_str() {
+            "Coordinate3" | "Coordinate4" | "Coordinate" => state.shared.coordinates = Some(ix),
+            "VertexProperty" => state.shared.coordinates = Some(ix),
+            "ProfileCoordinate2" | "ProfileCoordinate3" => state.shared.profile_coordinates = Some(ix),
+            "NurbsProfile" | "LinearProfile" => surfaces::profile(node, ix, state),
+            "Material" | "VrmlMaterial" | "BaseColor" | "PackedColor" => {
+                state.shared.color = color(node).or(state.shared.color);
+            }
+            "ShapeHints" => match node.word("vertexOrdering") {
+                "CLOCKWISE" => state.shared.clockwise = true,
+                "COUNTERCLOCKWISE" | "UNKNOWN_ORDERING" => state.shared.clockwise = false,
+                _ => {}
+            },
+            "Units" => {
+                let metres = metres(node.word("units"));
+                state.transform *= DAffine3::from_scale(DVec3::splat(metres / state.shared.metres));
+                state.shared.metres = metres;
+            }
+            "ResetTransform" => state.transform = DAffine3::IDENTITY,
+            "Switch" => self.switch(node, state, name),
+            "LOD" | "LevelOfDetail" => {
+                if node.children.len() > 1 {
+                    self.note(node, "only the first level of detail is read");
+                }
+                let mut inner = state.clone();
+                node.children.first().inspect(|&&child| self.node(child, &mut inner, name));
+            }
+            "Array" | "MultipleCopy" => self.copies(node, state, name),
+            "TransformSeparator" => {
+                let before = state.transform;
+                self.children(node, state, name);
+                state.transform = before;
+            }
+            "WWWInline" | "File" => {
+                let what =
+                    format!("{} is not followed", [node.word("name"), node.kind.as_str()].join(" ").trim());
+                self.stage.lose(node.source(), what);
+            }
+            kind if is_separator(kind) => {
+                let mut inner = state.clone();
+                self.children(node, &mut inner, name);
+            }
+            kind if is_loose_curve(kind) => self.stage.loose(LooseKind::Wire, name, node.source()),
+            "PointSet" | "IndexedPointSet" | "MarkerSet" | "IndexedMarkerSet" => {
+                self.stage.loose(LooseKind::Point, name, node.source());
+            }
+            "Text2" | "Text3" | "AsciiText" => self.note(node, "text has no surfaces here"),
+            _ => self.children(node, state, name),
+        }
+    }
+
+    /// Visits the unnamed children in order.
+    fn children(&mut self, node: &Node, state: &mut State, name: &str) {
+        for &child in &node.children {
+            self.node(child, state, name);
+        }
+    }
+
+    fn switch(&mut self, node: &Node, state: &mut State, name: &str) {
+        match node.number("whichChild", -1.0) {
+            which if which >= 0.0 => {
+                if let Some(&child) = node.children.get(which as usize) {
+                    self.node(child, state, name);
+                }
+            }
+            -3.0 => self.children(node, state, name),
+            _ if node.children.is_empty() => {}
+            _ => self.note(node, "no child is switched on; its children are left out"),
+        }
+    }
+
+    /// Children drawn several times: at the points of a grid, or by a list of matrices.
+    fn copies(&mut self, node: &Node, state: &State, name: &str) {
+        let places = if node.kind == "MultipleCopy" {
+            node.numbers("matrix").chunks_exact(16).map(matrix::of_rows).collect()
+        } else {
+            match grid(node) {
+                Some(places) => places,
+                None => {
+                    return self.stage.lose(node.source(), "an array of more than 100000 copies; left out");
+                }
+            }
+        };
+        for place in places {
+            let mut inner = State { transform: state.transform * place, shared: state.shared.clone() };
+            self.children(node, &mut inner, name);
+        }
+    }
+
+    /// Says something once for each kind of node.
+    pub(super) fn note(&mut self, node: &Node, what: &str) {
+        if self.noted.insert(node.kind.clone()) {
+            self.stage.warn(node.source(), format!("{}: {what}", node.kind));
+        }
+    }
+
+    /// What the faces of a shape have besides their shape.
+    pub(super) fn look(&self, node: &Node, state: &State, name: &str) -> Look {
+        Look { name: name.to_owned(), color: state.shared.color, source: node.source(), ..Look::default() }
+    }
+}
+
+/// The part of a name before what writers append to tell instances apart.
+fn readable(name: &str) -> &str {
+    name.split('+').next().unwrap_or_default()
+}
+
+/// The most copies that an array makes.
+const MOST_COPIES: f64 = 1e5;
+
+/// The places of an Array node.
+fn grid(node: &Node) -> Option<Vec<DAffine3>> {
+    let count = |i: usize| node.number(&format!("numElements{i}"), 1.0).max(1.0).floor();
+    let [a, b, c] = [1, 2, 3].map(count);
+    if !(a * b * c <= MOST_COPIES) {
+        return None;
+    }
+    let step = |i: usize| DVec3::from(node.vector(&format!("separation{i}"), [1.0, 0.0, 0.0]));
+    let back = match node.word("origin") {
+        "CENTER" => 0.5,
+        "LAST" => 1.0,
+        _ => 0.0,
+    };
+    let mut places = Vec::new();
+    for k in 0..c as u32 {
+        for j in 0..b as u32 {
+            for i in 0..a as u32 {
+                let at = |i: u32, count: f64| f64::from(i) - back * (count - 1.0);
+                let by = step(1) * at(i, a) + step(2) * at(j, b) + step(3) * at(k, c);
+                places.push(DAffine3::from_translation(by));
+            }
+        }
+    }
+    Some(places)
+}
+
+/// What a transformation node does; `None` for other nodes.
+fn transform(node: &Node) -> Option<DAffine3> {
+    let vector = |name, default| DVec3::from(node.vector(name, [default; 3]));
+    Some(match node.kind.as_str() {
+        "Transform" | "TransformManip" | "CenterballManip" | "HandleBoxManip" | "JackManip"
+        | "TabBoxManip" | "TrackballManip" | "TransformBoxManip" | "TransformerManip" => {
+            matrix::of_transform(node)
+        }
+        "MatrixTransform" => matrix::of_rows(&node.numbers("matrix")),
+        "Translation" => DAffine3::from_translation(vector("translation", 0.0)),
+        "Scale" => DAffine3::from_scale(vector("scaleFactor", 1.0)),
+        "Rotation" | "Rotor" | "Pendulum" => DAffine3::from_quat(matrix::rotation(node, "rotation")),
+        "RotationXYZ" => {
+            let angle = node.number("angle", 0.0);
+            DAffine3::from_quat(match node.word("axis") {
+                "Y" => DQuat::from_rotation_y(angle),
+                "Z" => DQuat::from_rotation_z(angle),
+                _ => DQuat::from_rotation_x(angle),
+            })
+        }
+        _ => return None,
+    })
+}
+
+/// Nodes that keep what their children change to themselves.
+fn is_separator(kind: &str) -> bool {
+    matches!(
+        kind,
+        "Separator"
+            | "Annotation"
+            | "Selection"
+            | "WWWAnchor"
+            | "TransformerManip"
+            | "LocateHighlight"
+            | "Root"
+    )
+}
+
+fn is_shape(kind: &str) -> bool {
+    shapes::is_one(kind) || matches!(kind, "NurbsSurface" | "IndexedNurbsSurface")
+}
+
+fn is_loose_curve(kind: &str) -> bool {
+    matches!(kind, "NurbsCurve" | "IndexedNurbsCurve" | "LineSet" | "IndexedLineSet")
+}
+
+/// The first colour of a material.
+fn color(node: &Node) -> Option<chordal_brep::Color> {
+    if node.kind == "PackedColor" {
+        let packed = *node.numbers("orderedRGBA").first()? as i64 as u32;
+        let [r, g, b, a] = packed.to_be_bytes().map(|byte| f64::from(byte) / 255.0);
+        return Some(stage::color([r, g, b], 1.0 - a));
+    }
+    let field = if node.kind == "BaseColor" { "rgb" } else { "diffuseColor" };
+    match *node.numbers(field) {
+        [r, g, b, ..] => Some(stage::color([r, g, b], node.number("transparency", 0.0))),
+        _ => None,
+    }
+}
+
+/// Metres of a unit of the Units node.
+fn metres(unit: &str) -> f64 {
+    match unit {
+        "CENTIMETERS" => 0.01,
+        "MILLIMETERS" => 0.001,
+        "MICROMETERS" | "MICRONS" => 1e-6,
+        "NANOMETERS" => 1e-9,
+        "ANGSTROMS" => 1e-10,
+        "KILOMETERS" => 1000.0,
+        "FEET" => 0.3048,
+        "INCHES" => 0.0254,
+        "POINTS" => 0.0254 / 72.0,
+        "YARDS" => 0.9144,
+        "MILES" => 1609.344,
+        "NAUTICAL_MILES" => 1852.0,
+        _ => 1.0,
+    }
+}

@@ -1,0 +1,102 @@
+//! Spline surfaces and curves from nets of homogeneous control points, u running fastest.
+
+use super::knots::{Direction, direction};
+use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4, NurbsCurve2, NurbsSurface};
+
+/// Control points nearer together than this share of the net's size are one: files hold 32-bit numbers.
+const ONE_POINT: f64 = 1e-6;
+
+/// A control net as a node gives it; points are (wx, wy, wz, w).
+#[derive(Debug)]
+pub(crate) struct Net<'a> {
+    pub points: Vec<DVec4>,
+    pub counts: [usize; 2],
+    pub orders: [usize; 2],
+    pub knots: [&'a [f64]; 2],
+    /// The node calls the direction closed.
+    pub closed: [bool; 2],
+}
+
+/// Makes points homogeneous: `points` are already multiplied by their weights, as X3D, VRML and GLU have it. Weights
+/// that are not one for each point are not used.
+pub(crate) fn weighted(points: &[DVec3], weights: &[f64]) -> Vec<DVec4> {
+    let all = weights.len() == points.len();
+    points.iter().enumerate().map(|(i, p)| p.extend(if all { weights[i] } else { 1.0 })).collect()
+}
+
+/// The surface of a net, and what was repaired.
+///
+/// # Errors
+/// A sentence, where the net makes no surface.
+pub(crate) fn surface(net: &Net<'_>) -> Result<(NurbsSurface, Vec<String>), String> {
+    let [count_u, count_v] = net.counts;
+    let needed = count_u.checked_mul(count_v).filter(|&n| n > 0).ok_or("it has no control points")?;
+    if net.points.len() < needed {
+        return Err(format!("{} control points where {count_u} × {count_v} are needed", net.points.len()));
+    }
+    let at = |i: usize, j: usize| net.points[j * count_u + i];
+    let same = same_points(&net.points[..needed]);
+    let meets_u = (0..count_v).all(|j| same(at(0, j), at(count_u - 1, j)));
+    let meets_v = (0..count_u).all(|i| same(at(i, 0), at(i, count_v - 1)));
+    let mut notes = Vec::new();
+    let mut along = |axis: usize, meets: bool| -> Result<Direction, String> {
+        let closed = net.closed[axis] && meets;
+        let found = direction(net.counts[axis], net.orders[axis], net.knots[axis], closed)?;
+        note_knots(&found, net.knots[axis].len(), ["u", "v"][axis], &mut notes);
+        Ok(found)
+    };
+    let (u, v) = (along(0, meets_u)?, along(1, meets_v)?);
+    // The first point is the last one, too: what follows it comes next.
+    let wrapped = |k: usize, count: usize| if k < count { k } else { k - count + 1 };
+    let mut points = Vec::with_capacity((count_u + u.wrapped) * (count_v + v.wrapped));
+    for i in 0..count_u + u.wrapped {
+        for j in 0..count_v + v.wrapped {
+            points.push(at(wrapped(i, count_u), wrapped(j, count_v)));
+        }
+    }
+    let weights: Vec<f64> = points.iter().map(|p| p.w).collect();
+    let points = points.into_iter().map(|p| p.truncate() / p.w).collect();
+    let surface = NurbsSurface::new([u.degree, v.degree], u.knots, v.knots, points, Some(weights))
+        .map_err(|error| error.to_string())?;
+    Ok((surface, notes))
+}
+
+/// A curve of parameter space; points are (wx, wy, w).
+///
+/// # Errors
+/// A sentence, where they make no curve.
+pub(crate) fn curve2(
+    points: &[DVec3],
+    order: usize,
+    knots: &[f64],
+    closed: bool,
+    notes: &mut Vec<String>,
+) -> Result<Curve2, String> {
+    let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
+        return Err("it has no control points".to_owned());
+    };
+    let homogeneous: Vec<DVec4> = points.iter().map(|p| p.extend(0.0)).collect();
+    let closed = closed && same_points(&homogeneous)(first.extend(0.0), last.extend(0.0));
+    let found = direction(points.len(), order, knots, closed)?;
+    note_knots(&found, knots.len(), "curve", notes);
+    let all = || points.iter().chain(&points[1..=found.wrapped]);
+    let weights = all().map(|p| p.z).collect();
+    let cartesian = all().map(|p| DVec2::new(p.x, p.y) / p.z).collect();
+    let curve = NurbsCurve2::new(found.degree, found.knots.clone(), cartesian, Some(weights));
+    curve.map(Curve2::Nurbs).map_err(|error| error.to_string())
+}
+
+fn note_knots(found: &Direction, given: usize, which: &str, notes: &mut Vec<String>) {
+    if found.replaced {
+        let needed = found.knots.len() - found.wrapped;
+        notes.push(format!(
+            "{which} knots do not fit ({given} where {needed} in increasing order are needed); even ones are used"
+        ));
+    }
+}
+
+/// Compares points against the size of their net.
+fn same_points(points: &[DVec4]) -> impl Fn(DVec4, DVec4) -> bool + use<> {
+    let size = points.iter().fold(0.0, |d: f64, p| d.max((*p - points[0]).abs().max_element()));
+    move |a, b| (a - b).abs().max_element() <= ONE_POINT * size
+}
