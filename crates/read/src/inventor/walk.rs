@@ -94,7 +94,7 @@ impl Walk<'_> {
             return;
         }
         if let Some(by) = transform(node) {
-            state.transform = state.transform * by;
+            state.transform *= by;
             return;
         }
         match node.kind.as_str() {
