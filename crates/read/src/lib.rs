@@ -6,6 +6,7 @@
 mod brep_text;
 mod build;
 mod error;
+mod flat;
 mod inventor;
 mod json;
 #[allow(dead_code, reason = "the X3D reader, which uses all of it, is on its way")]

@@ -7,6 +7,7 @@
 //! counter-clockwise, holes clockwise.
 
 mod chain;
+mod clip;
 mod edges;
 mod natural;
 mod nest;

@@ -1,5 +1,8 @@
 //! JSON: Chordal's own lossless document of a model, and what geomdl (NURBS-Python) exports.
 
+mod geomdl;
+mod trims;
+
 use crate::ReadError;
 use chordal_brep::Model;
 use serde::Deserialize;
@@ -26,7 +29,7 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let head: Head = serde_json::from_slice(text).map_err(|e| bad(e.to_string()))?;
     match head {
         Head { schema: Some(_), .. } => chordal_document::from_json(text).map_err(|e| bad(e.to_string())),
-        Head { shape: Some(_), .. } => Err(bad("geomdl".into())),
+        Head { shape: Some(_), .. } => geomdl::read(text, name).map_err(|e| bad(e.to_string())),
         _ => {
             Err(bad("it has neither the \"schema\" of a Chordal model nor the \"shape\" of a geomdl export"
                 .into()))

@@ -119,21 +119,38 @@ fn is_a_turn(d_uv: DVec2, scale: &Scale) -> bool {
     })
 }
 
-/// The piece, cut where its direction jumps.
+/// The piece, cut where its direction jumps, without the stretches in which it stands still (control points repeated
+/// for a corner).
 fn cut_at_corners(piece: &Piece, scale: &Scale) -> Vec<Piece> {
     let step = 1e-7 * piece.range.length();
     let direction = |a: f64, b: f64| scale.unit(piece.curve.point(b)) - scale.unit(piece.curve.point(a));
-    let mut stops = vec![piece.range.start];
-    for t in piece.curve.all_breaks(piece.range) {
+    let corner = |t: f64| {
         let (before, after) = (direction(t - step, t), direction(t, t + step));
-        let turn = before.perp_dot(after).atan2(before.dot(after)).abs();
-        if turn > CORNER && t - stops[stops.len() - 1] > step && piece.range.end - t > step {
-            stops.push(t);
-        }
-    }
+        before.perp_dot(after).atan2(before.dot(after)).abs() > CORNER
+    };
+    let still = |a: f64, b: f64| {
+        let at = |k: u32| piece.curve.point(a + (b - a) * f64::from(k) / 4.0);
+        (1..=4).all(|k| gap(at(0), at(k), scale) <= MEETS * 1e-3)
+    };
+    let mut stops = vec![piece.range.start];
+    stops.extend(piece.curve.all_breaks(piece.range));
     stops.push(piece.range.end);
-    let mut cut: Vec<Piece> =
-        stops.windows(2).map(|pair| Piece { range: Range::new(pair[0], pair[1]), ..piece.clone() }).collect();
+    let mut cut: Vec<Piece> = Vec::new();
+    let mut joined = false;
+    for pair in stops.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        if b - a > step && still(a, b) {
+            joined = false;
+            continue;
+        }
+        match cut.last_mut() {
+            Some(last) if joined && (b - a <= step || last.range.length() <= step || !corner(a)) => {
+                last.range.end = b;
+            }
+            _ => cut.push(Piece { range: Range::new(a, b), ..piece.clone() }),
+        }
+        joined = true;
+    }
     if !piece.forward {
         cut.reverse();
     }

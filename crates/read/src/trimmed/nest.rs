@@ -1,6 +1,7 @@
 //! Which loops are outer ones, which are holes, and which holes belong to which outer loop.
 
 use super::chain::Chain;
+use super::clip::{self, Outline};
 use super::natural;
 use super::{Role, Scale};
 use chordal_nurbs::{DVec2, Surface};
@@ -21,6 +22,7 @@ pub(super) fn groups(
     scale: &Scale,
 ) -> Result<Vec<Vec<Chain>>, String> {
     let (winding, plain): (Vec<Chain>, Vec<Chain>) = chains.into_iter().partition(|chain| chain.winds);
+    let plain = clip::to_domain(told_apart(plain, scale), scale)?;
     let mut nested = Vec::with_capacity(plain.len());
     for (i, chain) in plain.into_iter().enumerate() {
         let polygon = chain.polygon(scale);
@@ -70,6 +72,19 @@ pub(super) fn groups(
     Ok(outers.into_iter().map(|group| group.chains).collect())
 }
 
+/// Outer loops and holes, before they are cut off at the border of the domain.
+fn told_apart(chains: Vec<Chain>, scale: &Scale) -> Vec<Outline> {
+    let polygons: Vec<Vec<DVec2>> = chains.iter().map(|chain| chain.polygon(scale)).collect();
+    let nested: Vec<Nested> = chains
+        .into_iter()
+        .zip(polygons)
+        .map(|(chain, polygon)| Nested { area: area(&polygon), polygon, chain, covers: false })
+        .collect();
+    let roles = roles(&nested);
+    let outline = |(n, outer): (Nested, bool)| Outline { chain: n.chain, polygon: n.polygon, outer };
+    nested.into_iter().zip(roles).map(outline).collect()
+}
+
 /// A plain loop with its shape in the unit square.
 struct Nested {
     polygon: Vec<DVec2>,
@@ -107,7 +122,7 @@ fn roles(nested: &[Nested]) -> Vec<bool> {
         .collect()
 }
 
-fn area(polygon: &[DVec2]) -> f64 {
+pub(super) fn area(polygon: &[DVec2]) -> f64 {
     let n = polygon.len();
     let origin = polygon[0];
     (0..n).map(|i| (polygon[i] - origin).perp_dot(polygon[(i + 1) % n] - origin)).sum::<f64>() * 0.5
@@ -121,7 +136,7 @@ fn inside(points: &[DVec2], polygon: &[DVec2]) -> bool {
     2 * seen.iter().filter(|&&inside| inside).count() > seen.len()
 }
 
-fn contains(polygon: &[DVec2], p: DVec2) -> bool {
+pub(super) fn contains(polygon: &[DVec2], p: DVec2) -> bool {
     let mut inside = false;
     let n = polygon.len();
     for i in 0..n {
