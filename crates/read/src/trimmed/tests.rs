@@ -217,10 +217,12 @@ fn a_piece_along_both_sides_of_a_seam_is_one_edge() {
 }
 
 #[test]
-fn a_loop_far_outside_of_its_surface_fails_its_face() {
+fn a_loop_that_leaves_its_surface_is_cut_off_there() {
     let (part, _) = made(&patch(), &[rectangle([1.0, 1.0], [2.5, 2.0])]);
+    assert_eq!(coedges(&part.faces[0].loops[0]).len(), 4);
+    let (part, _) = made(&patch(), &[rectangle([2.1, 1.0], [2.5, 2.0])]);
     let FaceGeometry::Failed(reason) = &part.faces[0].geometry else { panic!("a face was made") };
-    assert!(reason.contains("leaves the surface by 25.0 %"), "{reason}");
+    assert!(reason.contains("beyond the surface"), "{reason}");
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn a_hole_with_sides_on_the_border_notches_it() {
 fn corners_of_the_domain_are_passed() {
     // An L around three corners.
     let big = polygon(&[[2.0, 0.0], [9.0, 0.0], [9.0, 9.0], [2.0, 9.0]], Role::Hole);
-    assert!((enclosed(&[big.clone()]).unwrap() - 3.0).abs() < 1e-9);
+    assert!((enclosed(std::slice::from_ref(&big)).unwrap() - 3.0).abs() < 1e-9);
     let kept = TrimLoop { role: Role::Outer, ..big };
     assert!((enclosed(&[kept]).unwrap() - 1.0).abs() < 1e-9);
 }
