@@ -1,6 +1,7 @@
 //! The command line: what can be asked, with its units and defaults.
 
 use chordal::{Bound, Format, JobOptions, Strategy, Tolerance, Unit, UpAxis};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -87,8 +88,8 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "LENGTH", value_parser = chordal::parse_length, allow_hyphen_values = true)]
     pub max_edge: Option<f64>,
     /// How points are placed and connected.
-    #[arg(long, value_enum, default_value = "default")]
-    pub strategy: StrategyArg,
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = strategies())]
+    pub strategy: Strategy,
     /// Whether the error of a facet is proven by an upper bound or estimated from samples.
     #[arg(long, value_enum, default_value = "proven")]
     pub bound: BoundArg,
@@ -112,6 +113,12 @@ fn parse_angle(text: &str) -> Result<AngleArg, chordal::QuantityError> {
     chordal::parse_angle(text).map(AngleArg)
 }
 
+/// Strategies by name, with a line of help for each.
+fn strategies() -> impl TypedValueParser<Value = Strategy> {
+    let names = Strategy::entries().iter().map(|e| PossibleValue::new(e.name).help(e.summary));
+    PossibleValuesParser::new(names).try_map(|name| Strategy::from_name(&name).ok_or("no such strategy"))
+}
+
 fn parse_jobs(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(n @ 1..=1024) => Ok(n),
@@ -126,12 +133,6 @@ fn parse_seconds(text: &str) -> Result<TimeoutArg, String> {
         Ok(time) => Ok(TimeoutArg((!time.is_zero()).then_some(time))),
         Err(_) => Err("not a number of seconds".into()),
     }
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum StrategyArg {
-    /// Grids and strips where the surface allows them, points in the sizing metric elsewhere.
-    Default,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -178,9 +179,6 @@ pub enum UpArg {
 impl AccuracyArgs {
     /// As the library's options.
     pub fn options(&self) -> JobOptions {
-        let strategy = match self.strategy {
-            StrategyArg::Default => Strategy::Default,
-        };
         let bound = match self.bound {
             BoundArg::Proven => Bound::Proven,
             BoundArg::Estimated => Bound::Estimated,
@@ -189,7 +187,7 @@ impl AccuracyArgs {
             .with_tolerance(self.tolerance)
             .with_angle(self.angle.0)
             .with_max_edge(self.max_edge)
-            .with_strategy(strategy)
+            .with_strategy(self.strategy)
             .with_bound(bound)
             .with_jobs(self.jobs)
             .with_face_timeout(self.face_timeout.0)

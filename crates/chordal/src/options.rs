@@ -1,27 +1,9 @@
 //! What a job is asked for, in millimetres and radians.
 
 use crate::Tolerance;
-use chordal_tessellate::Bound;
+use chordal_tessellate::{Bound, Strategy};
 use chordal_write::{Format, Unit, UpAxis};
 use std::time::Duration;
-
-/// How interior points of faces are placed and connected.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Strategy {
-    /// Grids and strips where the sizing metric allows them, points in the metric elsewhere.
-    #[default]
-    Default,
-}
-
-impl Strategy {
-    /// The name on the command line and in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Strategy::Default => "default",
-        }
-    }
-}
 
 /// What is asked of a whole job.
 ///

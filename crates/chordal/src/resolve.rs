@@ -72,6 +72,7 @@ pub fn resolve(
                 .with_angle(options.angle)
                 .with_max_edge(options.max_edge.map(|length| length / part_use.scale))
                 .with_bound(options.bound)
+                .with_strategy(options.strategy)
                 .with_face_timeout(options.face_timeout)
         })
         .collect();

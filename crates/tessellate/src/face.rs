@@ -6,6 +6,7 @@ use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Bound, Cancel, Options};
 use crate::place::Rows;
 use crate::prove::{Prover, Verdict};
+use crate::strategy::{self, Strategy, trace::Trace};
 use crate::triangulate::{Location, NONE, Triangulation, clip_ears, orient, sweep};
 use crate::unroll::{Chart, SEAM_CHORD};
 use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceBounds, UvBox};
@@ -27,6 +28,8 @@ pub(crate) struct FaceResult {
     pub bound: &'static str,
     /// c·∫√|K| dA / ε, and the strips of a singly curved face.
     pub curvature_bound: f64,
+    /// Which parts ran.
+    pub trace: Trace,
 }
 
 impl FaceResult {
@@ -121,6 +124,7 @@ pub(crate) struct FaceWork<'a, 's> {
     /// Regularises metrics that vanish in some direction.
     floor: f64,
     shape: Shape,
+    pub trace: Trace,
 }
 
 impl<'a, 's> FaceWork<'a, 's> {
@@ -160,16 +164,19 @@ impl<'a, 's> FaceWork<'a, 's> {
             floor: 0.0,
             shape,
             chart,
+            trace: Trace::default(),
         };
         work.measure_boundary();
-        work.improve_boundary();
-        if shape == Shape::Doubly {
-            work.place_interior();
-        }
         let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
         let deadline = options.face_timeout.map(|t| started + t);
         let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, how.accept);
-        let verdict = prover.refine(&mut work)?;
+        let verdict = match options.strategy {
+            Strategy::Default => {
+                work.fill_by_rows();
+                prover.refine(&mut work)?
+            }
+            other => strategy::fill(&mut work, &mut prover, other, options.bound)?,
+        };
         match verdict {
             Verdict::Finer(chords) => Ok(Attempt::Over(Outcome::Finer(chords))),
             Verdict::FinerSeam => Ok(Attempt::FinerSeam),
@@ -299,6 +306,16 @@ impl<'a, 's> FaceWork<'a, 's> {
         self.mesh.changed.clear();
     }
 
+    /// The default strategy.
+    fn fill_by_rows(&mut self) {
+        self.improve_boundary();
+        if self.shape == Shape::Doubly {
+            self.place_interior();
+        }
+        self.trace.add("boundary sweep", self.chart.loops.len());
+        self.trace.add("points in rows", self.mesh.points.len() - self.chart.points.len());
+    }
+
     fn place_interior(&mut self) {
         let rows = Rows::new(self.context.surface, &self.chart, self.limits);
         let mut hint = 0;
@@ -405,6 +422,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             gap,
             bound,
             curvature_bound,
+            trace: self.trace,
         }
     }
 

@@ -1,5 +1,6 @@
 //! What is asked of a mesh, in the units of the part.
 
+use crate::strategy::Strategy;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -26,6 +27,7 @@ pub struct Options {
     /// Longest mesh edge, in the part's units.
     pub max_edge: Option<f64>,
     pub bound: Bound,
+    pub strategy: Strategy,
     /// Time after which a face is given up.
     pub face_timeout: Option<Duration>,
     /// Triangles after which a face is given up.
@@ -39,6 +41,7 @@ impl Options {
             angle: None,
             max_edge: None,
             bound: Bound::Proven,
+            strategy: Strategy::Default,
             face_timeout: None,
             face_triangles: 20_000_000,
         }
@@ -53,6 +56,10 @@ impl Options {
     }
     pub fn with_bound(mut self, bound: Bound) -> Self {
         self.bound = bound;
+        self
+    }
+    pub fn with_strategy(mut self, strategy: Strategy) -> Self {
+        self.strategy = strategy;
         self
     }
     pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {

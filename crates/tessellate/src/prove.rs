@@ -46,7 +46,7 @@ const TURN_LENGTH: f64 = 0.1;
 const FOLD_HEIGHT: f64 = 0.05;
 
 /// What is wrong with a triangle.
-enum Fault {
+pub(crate) enum Fault {
     None,
     /// The edge opposite this corner is too long for this face, whatever is done inside.
     Edge(usize),
@@ -137,6 +137,11 @@ impl<'a> Prover<'a> {
             return Ok(Verdict::Finer(requests));
         }
         let error = errors.iter().fold(0.0f64, |m, &e| m.max(e));
+        Ok(self.proven(error))
+    }
+
+    /// The verdict over triangles of which none is further off than `error`.
+    pub fn proven(&self, error: f64) -> Verdict {
         let bound = match self.bounds.surface() {
             _ if self.sampled => "sampled",
             _ if error.is_infinite() => "none",
@@ -145,17 +150,28 @@ impl<'a> Prover<'a> {
             Surface::Sphere { .. } => "sphere",
             _ => "second derivatives",
         };
-        Ok(Verdict::Proven { error: if self.sampled { f64::NAN } else { error }, bound })
+        Verdict::Proven { error: if self.sampled { f64::NAN } else { error }, bound }
     }
 
-    fn check_budget(&self, work: &FaceWork<'_, '_>) -> Result<(), String> {
+    pub fn check_budget(&self, work: &FaceWork<'_, '_>) -> Result<(), String> {
+        self.check_time(work.mesh.triangles.len())
+    }
+
+    /// # Errors
+    /// A sentence, where the job was cancelled or the face's time is over.
+    pub fn check_time(&self, triangles: usize) -> Result<(), String> {
         if self.cancel.is_cancelled() {
             return Err("cancelled".into());
         }
         if self.deadline.is_some_and(|d| Instant::now() > d) {
-            return Err(format!("out of time at {} triangles", work.mesh.triangles.len()));
+            return Err(format!("out of time at {triangles} triangles"));
         }
         Ok(())
+    }
+
+    /// True where what cannot be mended is taken as it is.
+    pub fn accepts(&self) -> bool {
+        self.accept
     }
 
     fn facet(work: &FaceWork<'_, '_>, t: u32) -> Facet {
@@ -195,7 +211,7 @@ impl<'a> Prover<'a> {
         a == b || b == c || c == a
     }
 
-    fn judge(&mut self, work: &FaceWork<'_, '_>, t: u32) -> (f64, Fault) {
+    pub fn judge(&mut self, work: &FaceWork<'_, '_>, t: u32) -> (f64, Fault) {
         if Self::collapsed(work, t) {
             return (0.0, Fault::None);
         }
@@ -253,7 +269,7 @@ impl<'a> Prover<'a> {
         [(n, m), (m, k), (k, n)].iter().any(|&(n, m)| turns_too_far(n, m, self.limits.angle))
     }
 
-    fn boundary_segment(&self, work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<Segment> {
+    pub fn boundary_segment(&self, work: &FaceWork<'_, '_>, t: u32, i: usize) -> Option<Segment> {
         let corners = work.mesh.triangles[t as usize];
         work.segment(corners[(i + 1) % 3], corners[(i + 2) % 3])
     }

@@ -1,5 +1,7 @@
 //! What was done to a part, face by face.
 
+use crate::strategy::trace::Trace;
+
 /// One face.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FaceReport {
@@ -14,6 +16,8 @@ pub struct FaceReport {
     pub bound: &'static str,
     /// The fewest triangles possible, see `docs/report.md`.
     pub lower_bound: f64,
+    /// Which parts of the tessellator ran, and what each made.
+    pub trace: Trace,
     /// Why the face has no triangles, or not good enough ones.
     pub failed: Option<String>,
     /// The face is so thin that it has no area at the model's own accuracy; it has no triangles and needs none.

@@ -299,6 +299,7 @@ impl Job<'_> {
                     entry.proven_error = result.proven_error;
                     entry.gap = result.gap;
                     entry.bound = result.bound;
+                    entry.trace = result.trace.clone();
                     entry.zero_area = result.triangles.is_empty();
                     entry.lower_bound =
                         lower_bound(&self.part.faces[index], edges, &closed, result.curvature_bound);

@@ -1,0 +1,126 @@
+//! Methods by name: a strategy is a choice of parts for the inside of a face.
+//!
+//! All strategies share the edges, the proof, the stitching and so the watertightness; none may set a vertex on an edge that its
+//! neighbours do not know. What they choose is how a face is subdivided, how the subdivision is cut with the face's
+//! loops, and how the polygons become triangles. Every part that ran leaves its name in the [`trace::Trace`], which
+//! the report shows. `docs/strategies.md` says which document each method comes from.
+
+pub(crate) mod trace;
+
+mod borders;
+mod cells;
+mod constrain;
+mod cut;
+mod kd;
+mod node;
+mod polygons;
+mod region;
+mod run;
+
+pub(crate) use run::fill;
+
+/// Where a node of a subdivision is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// Half way.
+    Midpoint,
+    /// At the control point farthest from the bilinear approximation.
+    WorstPoint,
+}
+
+/// How the inside of faces is filled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Strategy {
+    /// Grids and strips where the sizing metric allows them, points in the metric elsewhere.
+    #[default]
+    Default,
+    /// A kd-tree whose direction of cutting is chosen at the worst point (Balázs, Guthe, Klein 2004, section 5.2).
+    Kd(Cut),
+    /// Binary subdivision across the direction that bends more (the same section).
+    Binary(Cut),
+}
+
+/// A strategy as the command line and the documents know it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StrategyEntry {
+    pub strategy: Strategy,
+    /// The name on the command line and in reports.
+    pub name: &'static str,
+    /// One line of help.
+    pub summary: &'static str,
+    /// Where it is described.
+    pub source: &'static str,
+}
+
+const fn entry(
+    strategy: Strategy,
+    name: &'static str,
+    summary: &'static str,
+    source: &'static str,
+) -> StrategyEntry {
+    StrategyEntry { strategy, name, summary, source }
+}
+
+const BALAZS: &str = "Balázs, Guthe, Klein 2004, sections 5.2, 6 and 7";
+
+/// Every strategy, in the order of the help.
+static ENTRIES: &[StrategyEntry] = &[
+    entry(
+        Strategy::Default,
+        "default",
+        "rows and strips in the sizing metric, every triangle proven",
+        "Chordal",
+    ),
+    entry(
+        Strategy::Kd(Cut::Midpoint),
+        "kd-midpoint",
+        "kd-tree cut half way in the direction of the worst point",
+        BALAZS,
+    ),
+    entry(Strategy::Kd(Cut::WorstPoint), "kd-worst", "kd-tree cut at the worst control point", BALAZS),
+    entry(
+        Strategy::Binary(Cut::Midpoint),
+        "binary-midpoint",
+        "binary subdivision half way across the larger bend",
+        BALAZS,
+    ),
+    entry(
+        Strategy::Binary(Cut::WorstPoint),
+        "binary-worst",
+        "binary subdivision at the worst point across the larger bend",
+        BALAZS,
+    ),
+];
+
+impl Strategy {
+    /// Every strategy with its name and source.
+    pub fn entries() -> &'static [StrategyEntry] {
+        ENTRIES
+    }
+
+    /// The name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        ENTRIES.iter().find(|e| e.strategy == self).map_or("unnamed", |e| e.name)
+    }
+
+    /// The strategy of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        ENTRIES.iter().find(|e| e.name == name).map(|e| e.strategy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_strategies_are_one_to_one() {
+        for (i, e) in ENTRIES.iter().enumerate() {
+            assert_eq!(Strategy::from_name(e.name), Some(e.strategy));
+            assert_eq!(e.strategy.name(), e.name);
+            assert!(ENTRIES[..i].iter().all(|other| other.strategy != e.strategy && other.name != e.name));
+        }
+        assert_eq!(Strategy::from_name("nonsense"), None);
+    }
+}

@@ -1,0 +1,269 @@
+//! The tree of cells over the box of a face's loops, whatever rule cuts them.
+//!
+//! Cells live in the parameters of the surface's NURBS form, their corners also in those of the chart: the two differ by a
+//! monotone map per direction, so lines of constant parameter stay such. A closed spline surface is cut at its seam
+//! first. Cells that the face does not meet are left as they are.
+
+use super::node::Measure;
+use super::region::Region;
+use crate::surface::FaceSurface;
+use chordal_nurbs::{DVec2, NurbsParameters, NurbsSurface, ParameterMap, Surface, UvBox};
+
+/// Where a cell is to be cut: across u (axis 0) or v at this NURBS parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Split {
+    pub axis: usize,
+    pub at: f64,
+}
+
+/// A method of subdivision.
+pub(crate) trait Rule: Send {
+    /// The name in the trace.
+    fn name(&self) -> &'static str;
+    /// The cuts that every root gets before any error is looked at.
+    fn first_cuts(&self, _root: &NurbsSurface, _tolerance: f64) -> Vec<Split> {
+        Vec::new()
+    }
+    /// The cuts of a cell that is too coarse for `tolerance`; none where it is fine enough.
+    fn cuts(&self, piece: &NurbsSurface, tolerance: f64, measure: Measure) -> Vec<Split>;
+    /// The cuts of a cell that was found too coarse by the proof.
+    fn forced(&self, piece: &NurbsSurface, measure: Measure) -> Vec<Split> {
+        self.cuts(piece, 0.0, measure)
+    }
+    /// Where one cell is too coarse, all are cut.
+    fn is_uniform(&self) -> bool {
+        false
+    }
+}
+
+/// One cell.
+#[derive(Clone, Debug)]
+pub(crate) struct Cell {
+    /// In the chart's parameters.
+    pub bounds: UvBox,
+    pub piece: NurbsSurface,
+    /// Index of the root's parameter maps.
+    map: usize,
+    pub depth: u32,
+    /// The face meets it.
+    pub met: bool,
+    /// No rule cuts it again.
+    finished: bool,
+}
+
+/// The cells of one face.
+pub(crate) struct Cells {
+    pub leaves: Vec<Cell>,
+    maps: Vec<NurbsParameters>,
+}
+
+/// No cell is cut more often than this.
+const DEEPEST: u32 = 60;
+
+/// Cells narrower than this share of the face's box are not cut: their corners would be one.
+const NARROWEST: f64 = 1e-7;
+
+/// The share of the tolerance that surfaces without an exact NURBS form may differ from the one that is subdivided.
+/// The proof is about the surface itself, so this only decides where cells end.
+const FORM_SHARE: f64 = 0.1;
+
+impl Cells {
+    /// One cell per turn of a closed spline surface, else one.
+    ///
+    /// # Errors
+    /// A sentence, where the surface has no NURBS form.
+    pub fn new(surface: &FaceSurface<'_>, uv_box: UvBox, tolerance: f64) -> Result<Self, String> {
+        let mut cells = Self { leaves: Vec::new(), maps: Vec::new() };
+        let [us, vs] = [0, 1].map(|axis| root_breaks(surface, uv_box, axis));
+        for u in us.windows(2) {
+            for v in vs.windows(2) {
+                let bounds = UvBox::new(DVec2::new(u[0], v[0]), DVec2::new(u[1], v[1]));
+                let (piece, map) = nurbs_form(surface.surface, bounds, tolerance)?;
+                let map_index = cells.maps.len();
+                cells.maps.push(map);
+                cells.leaves.push(Cell {
+                    bounds,
+                    piece,
+                    map: map_index,
+                    depth: 0,
+                    met: true,
+                    finished: false,
+                });
+            }
+        }
+        Ok(cells)
+    }
+
+    /// Cuts every root as the rule does before it looks at errors.
+    pub fn begin(&mut self, rule: &dyn Rule, region: &Region, tolerance: f64) {
+        for i in 0..self.leaves.len() {
+            let cuts = rule.first_cuts(&self.leaves[i].piece, tolerance);
+            self.cut(i, &cuts, region);
+        }
+    }
+
+    /// Cuts all cells that the face meets until the rule is content.
+    ///
+    /// # Errors
+    /// What `check` says, which is asked now and then.
+    pub fn refine(
+        &mut self,
+        rule: &dyn Rule,
+        region: &Region,
+        tolerance: f64,
+        measure: Measure,
+        check: &dyn Fn(usize) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let (mut i, mut steps) = (0, 0usize);
+        while i < self.leaves.len() {
+            steps += 1;
+            if steps.is_multiple_of(256) {
+                check(self.leaves.len())?;
+            }
+            let leaf = &self.leaves[i];
+            let cuts = if leaf.met && !leaf.finished {
+                rule.cuts(&leaf.piece, tolerance, measure)
+            } else {
+                Vec::new()
+            };
+            if cuts.is_empty() || !self.cut(i, &cuts, region) {
+                self.leaves[i].finished = true;
+                i += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Cuts the leaves that hold these points of the chart by force; true where any could be cut.
+    pub fn cut_at(&mut self, points: &[DVec2], rule: &dyn Rule, region: &Region, measure: Measure) -> bool {
+        let leaves: Vec<usize> = if rule.is_uniform() {
+            (0..self.leaves.len()).filter(|&i| self.leaves[i].met).collect()
+        } else {
+            self.leaves_at(points)
+        };
+        let mut any = false;
+        for i in leaves {
+            let cuts = rule.forced(&self.leaves[i].piece, measure);
+            any |= self.cut(i, &cuts, region);
+        }
+        any
+    }
+
+    /// The leaves that hold points of the chart, each once, in their order.
+    fn leaves_at(&self, points: &[DVec2]) -> Vec<usize> {
+        let mut order: Vec<DVec2> = points.to_vec();
+        order.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        let holds = |bounds: &UvBox| {
+            let from = order.partition_point(|p| p.x < bounds.min.x);
+            let to = order.partition_point(|p| p.x <= bounds.max.x);
+            order[from..to].iter().any(|&p| bounds.contains(p))
+        };
+        (0..self.leaves.len()).filter(|&i| self.leaves[i].met && holds(&self.leaves[i].bounds)).collect()
+    }
+
+    /// Replaces a leaf by its parts: the first in its place, the others at the end. False where it cannot be cut.
+    fn cut(&mut self, index: usize, cuts: &[Split], region: &Region) -> bool {
+        if cuts.is_empty() || self.leaves[index].depth >= DEEPEST {
+            return false;
+        }
+        let whole = region.uv_box.size() * NARROWEST;
+        let mut parts = vec![self.leaves[index].clone()];
+        for cut in cuts {
+            let mut after = Vec::with_capacity(parts.len() + 1);
+            for part in parts {
+                match self.halves(&part, *cut, whole) {
+                    Some((low, high)) => after.extend([low, high]),
+                    None => after.push(part),
+                }
+            }
+            parts = after;
+        }
+        if parts.len() == 1 {
+            return false;
+        }
+        for part in &mut parts {
+            part.met = region.meets(part.bounds);
+        }
+        self.leaves.splice(index..=index, parts.drain(..1));
+        self.leaves.append(&mut parts);
+        true
+    }
+
+    fn halves(&self, cell: &Cell, cut: Split, narrowest: DVec2) -> Option<(Cell, Cell)> {
+        let axis = cut.axis;
+        let own = cell.piece.domain();
+        if !(cut.at > own.min[axis] && cut.at < own.max[axis]) {
+            return None;
+        }
+        let map = &self.maps[cell.map];
+        let map = if axis == 0 { &map.u } else { &map.v };
+        let at = map.native_from_nurbs(cut.at);
+        let room = (at - cell.bounds.min[axis]).min(cell.bounds.max[axis] - at);
+        if !(room > narrowest[axis]) {
+            return None;
+        }
+        let (low, high) =
+            if axis == 0 { cell.piece.split_u(cut.at) } else { cell.piece.split_v(cut.at) }.ok()?;
+        let part = |piece: NurbsSurface, is_low: bool| {
+            let mut bounds = cell.bounds;
+            if is_low {
+                bounds.max[axis] = at;
+            } else {
+                bounds.min[axis] = at;
+            }
+            Cell { bounds, piece, map: cell.map, depth: cell.depth + 1, met: true, finished: false }
+        };
+        Some((part(low, true), part(high, false)))
+    }
+}
+
+/// Where roots end along one direction: the sides of the box, and the seams of a spline surface between them.
+fn root_breaks(surface: &FaceSurface<'_>, uv_box: UvBox, axis: usize) -> Vec<f64> {
+    let (mut start, mut end) = (uv_box.min[axis], uv_box.max[axis]);
+    let domain = surface.domain();
+    let (low, high) = (domain.min[axis], domain.max[axis]);
+    if !(low.is_finite() && high.is_finite()) || is_angle(surface.surface, axis) {
+        return vec![start, end];
+    }
+    let Some(period) = surface.periods[axis] else {
+        // Loops may stray a little beyond the surface; cells cannot.
+        start = start.clamp(low, high);
+        end = end.clamp(low, high);
+        return vec![start, end];
+    };
+    let mut breaks = vec![start];
+    let mut seam = low + ((start - low) / period).ceil() * period;
+    let slack = 1e-9 * period;
+    while seam < end - slack {
+        if seam > start + slack {
+            breaks.push(seam);
+        }
+        seam += period;
+    }
+    breaks.push(end);
+    breaks
+}
+
+/// True for parameters that are angles, which go on over the seam.
+fn is_angle(surface: &Surface, axis: usize) -> bool {
+    match surface {
+        Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Revolution { .. } => axis == 0,
+        Surface::Sphere { .. } | Surface::Torus { .. } => true,
+        _ => false,
+    }
+}
+
+fn nurbs_form(
+    surface: &Surface,
+    bounds: UvBox,
+    tolerance: f64,
+) -> Result<(NurbsSurface, NurbsParameters), String> {
+    if let (Ok(piece), Ok(map)) = (surface.to_nurbs(bounds), surface.nurbs_parameters(bounds)) {
+        return Ok((piece, map));
+    }
+    let same = NurbsParameters { u: ParameterMap::Identity, v: ParameterMap::Identity };
+    match surface.approximate_nurbs(bounds, FORM_SHARE * tolerance) {
+        Ok((piece, _)) => Ok((piece, same)),
+        Err(error) => Err(format!("its surface has no NURBS form: {error}")),
+    }
+}

@@ -1,0 +1,28 @@
+//! Which parts of the tessellator really ran for a face, and how often.
+
+/// Names of parts with counts of what each of them made; in the order in which they first ran.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Trace(Vec<(&'static str, usize)>);
+
+impl Trace {
+    /// Books `count` things made by `part`; a part that made nothing did not run.
+    pub fn add(&mut self, part: &'static str, count: usize) {
+        if count == 0 {
+            return;
+        }
+        match self.0.iter_mut().find(|(name, _)| *name == part) {
+            Some((_, sum)) => *sum += count,
+            None => self.0.push((part, count)),
+        }
+    }
+
+    /// The parts that ran, each with what it made.
+    pub fn parts(&self) -> impl Iterator<Item = (&'static str, usize)> + '_ {
+        self.0.iter().copied()
+    }
+
+    /// What `part` made.
+    pub fn count(&self, part: &str) -> usize {
+        self.0.iter().find(|(name, _)| *name == part).map_or(0, |(_, count)| *count)
+    }
+}
