@@ -94,6 +94,58 @@ def sphere_lunes(path: Path) -> None:
     write_solid(s, faces, path)
 
 
+@case("sphere_pole_on_edge", "a quarter of a ball, tilted: one edge runs over the pole of its sphere", solids=1,
+      closed=True, faces=3)
+def sphere_pole_on_edge(path: Path) -> None:
+    s = Step(path.stem)
+    # Tilted, so that no sample hits the pole to the last bit.
+    x = np.array(unit((3, 1, 2)))
+    z = np.array(unit(tuple(np.cross(x, (1, 5, -2)))))
+    y = np.cross(z, x)
+    x, y, z = (tuple(float(c) for c in axis) for axis in (x, y, z))
+    minus = lambda v: tuple(-c for c in v)
+    a, b = tuple(10 * c for c in x), tuple(-10 * c for c in x)
+    equator, meridian = s.edge(a, b, s.circle(O, z, x, 10)), s.edge(a, b, s.circle(O, minus(y), x, 10))
+    line, along = s.segment(b, a)
+    quarter = s.loop([(equator, True), (meridian, False)])
+    low, wall = s.loop([(equator, False), (line, not along)]), s.loop([(meridian, True), (line, along)])
+    faces = [
+        s.face([s.bound(quarter, outer=True)], s.elementary("SPHERICAL_SURFACE", O, z, x, 10)),
+        s.face([s.bound(low, outer=True)], s.plane(O, minus(z), x)),
+        s.face([s.bound(wall, outer=True)], s.plane(O, minus(y), x)),
+    ]
+    write_solid(s, faces, path)
+
+
+@case("crescent", "two arcs of different radius that touch where they meet: coarse chords cross", solids=1, closed=True,
+      faces=5)
+def crescent(path: Path) -> None:
+    s = Step(path.stem)
+    up = lambda p, z: (p[0], p[1], z)
+    p, q, r = (-26, 0), (32, 0), (26, 0)
+    outer = [s.edge(up(q, z), up(p, z), s.circle((3, 0, z), Z, X, 29)) for z in (0, 5)]
+    inner = [s.edge(up(r, z), up(p, z), s.circle((0, 0, z), Z, X, 26)) for z in (0, 5)]
+
+    def side(edge: list[str], start: Point, end: Point, surface: str, sense: bool) -> str:
+        uses = [(edge[0], True), s.segment(up(end, 0), up(end, 5)), (edge[1], False), s.segment(up(start, 5), up(start, 0))]
+        if not sense:
+            uses = [(e, not forward) for e, forward in reversed(uses)]
+        return s.face([s.bound(s.loop(uses), outer=True)], surface, sense)
+
+    ends = [s.segment(up(r, z), up(q, z)) for z in (0, 5)]
+    turned = lambda use: (use[0], not use[1])
+    top = s.loop([ends[1], (outer[1], True), (inner[1], False)])
+    bottom = s.loop([(inner[0], True), (outer[0], False), turned(ends[0])])
+    faces = [
+        side(outer, q, p, s.elementary("CYLINDRICAL_SURFACE", (3, 0, 0), Z, X, 29), True),
+        side(inner, r, p, s.elementary("CYLINDRICAL_SURFACE", O, Z, X, 26), False),
+        s.flat([up(r, 0), up(q, 0), up(q, 5), up(r, 5)]),
+        s.face([s.bound(top, outer=True)], s.plane((0, 0, 5), Z, X)),
+        s.face([s.bound(bottom, outer=True)], s.plane(O, DOWN, X)),
+    ]
+    write_solid(s, faces, path)
+
+
 def whole(path: Path, kind: str, values: tuple[float, ...], vertex: Point | None) -> None:
     """A closed surface as one face: no loop at all, or a vertex loop."""
     s = Step(path.stem)
