@@ -102,14 +102,15 @@ impl EdgeSamples {
         self.t.extend_from_slice(&t[1..]);
     }
 
-    /// Halves the named chords.
-    pub fn split(&mut self, edge: &Edge, chords: &[u32]) {
+    /// Cuts the named chords into this many parts.
+    pub fn split(&mut self, edge: &Edge, chords: &[u32], parts: u32) {
         let Some(curve) = edge.curve.as_deref() else { return };
         let ends = [self.points[0], self.points[self.points.len() - 1]];
         let mut t = vec![self.t[0]];
         for (k, pair) in self.t.windows(2).enumerate() {
             if chords.contains(&(k as u32)) {
-                t.push(0.5 * (pair[0] + pair[1]));
+                let at = |i: u32| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(parts);
+                t.extend((1..parts).map(at));
             }
             t.push(pair[1]);
         }

@@ -235,7 +235,8 @@ impl<'a> Prover<'a> {
             return (f64::INFINITY, coarse.map_or_else(inner, Fault::Edge));
         }
         let normals = work.turning_normals(corners);
-        for i in 0..3 {
+        // Chords first: a point inside does not help them, and the face runs again with finer ones anyhow.
+        for i in (0..3).filter(|&i| boundary[i]).chain((0..3).filter(|&i| !boundary[i])) {
             let [n, m] = [normals[(i + 1) % 3], normals[(i + 2) % 3]];
             let length =
                 work.xyz[corners[(i + 1) % 3] as usize].distance(work.xyz[corners[(i + 2) % 3] as usize]);

@@ -21,6 +21,9 @@ use std::time::Instant;
 /// Rounds in which faces may ask for finer edges; what is still too coarse then is meshed as it is and reported.
 const MAX_ROUNDS: usize = 8;
 
+/// In so many rounds chords are halved, later quartered: where a surface turns within almost no distance, halves do not get there.
+const HALVING_ROUNDS: usize = 4;
+
 /// From this round on loops that still cross are taken to cross in truth.
 const LAST_RESORT: usize = 6;
 
@@ -270,7 +273,8 @@ impl Job<'_> {
             for group in requests.chunk_by(|a, b| a.0 == b.0) {
                 let index = group[0].0 as usize;
                 let chords: Vec<u32> = group.iter().map(|r| r.1).collect();
-                edges[index].split(&self.part.edges[index], &chords);
+                let parts = if round < HALVING_ROUNDS { 2 } else { 4 };
+                edges[index].split(&self.part.edges[index], &chords, parts);
                 dirty.extend(self.info[index].uses.iter().map(|u| u.0));
             }
             dirty.sort_unstable();
