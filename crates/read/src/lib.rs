@@ -9,10 +9,10 @@ mod error;
 mod flat;
 mod inventor;
 mod json;
-#[allow(dead_code, reason = "the X3D reader, which uses all of it, is on its way")]
 mod scene;
 mod step;
 mod trimmed;
+mod x3d;
 
 use chordal_brep::Model;
 use std::path::Path;
@@ -56,4 +56,5 @@ const FORMATS: &[Format] = &[
     Format { looks_like: json::looks_like_json, read: json::read },
     Format { looks_like: brep_text::looks_like_brep, read: brep_text::read },
     Format { looks_like: inventor::looks_like_inventor, read: inventor::read },
+    Format { looks_like: x3d::looks_like_x3d, read: x3d::read },
 ];

@@ -239,12 +239,12 @@ fn transform(node: &Node) -> Option<DAffine3> {
     Some(match node.kind.as_str() {
         "Transform" | "TransformManip" | "CenterballManip" | "HandleBoxManip" | "JackManip"
         | "TabBoxManip" | "TrackballManip" | "TransformBoxManip" | "TransformerManip" => {
-            matrix::of_transform(node)
+            matrix::of_transform(node, 1.0)
         }
         "MatrixTransform" => matrix::of_rows(&node.numbers("matrix")),
         "Translation" => DAffine3::from_translation(vector("translation", 0.0)),
         "Scale" => DAffine3::from_scale(vector("scaleFactor", 1.0)),
-        "Rotation" | "Rotor" | "Pendulum" => DAffine3::from_quat(matrix::rotation(node, "rotation")),
+        "Rotation" | "Rotor" | "Pendulum" => DAffine3::from_quat(matrix::rotation(node, "rotation", 1.0)),
         "RotationXYZ" => {
             let angle = node.number("angle", 0.0);
             DAffine3::from_quat(match node.word("axis") {

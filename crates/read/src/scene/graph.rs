@@ -165,6 +165,8 @@ pub(crate) struct Graph {
     pub prototypes: FxHashMap<String, Prototype>,
     /// Millimetres of one unit of length.
     pub millimetres: Option<f64>,
+    /// Radians of one unit of angle.
+    pub radians: Option<f64>,
     pub warnings: Vec<Warning>,
     dropped: usize,
     dropped_lost: bool,
@@ -179,6 +181,17 @@ impl Graph {
         let ix = NodeIx::try_from(self.nodes.len()).expect("a file of less than 4 GiB of nodes");
         self.nodes.push(node);
         ix
+    }
+
+    /// A UNIT statement: `factor` metres or radians.
+    pub(crate) fn unit(&mut self, category: &str, factor: f64) {
+        if factor > 0.0 && factor.is_finite() {
+            match category {
+                "length" => self.millimetres = Some(1000.0 * factor),
+                "angle" => self.radians = Some(factor),
+                _ => {}
+            }
+        }
     }
 
     /// The first node of a field, or among unnamed children and other fields the first of one of these kinds.

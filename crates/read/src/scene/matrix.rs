@@ -5,27 +5,27 @@ use chordal_nurbs::{DAffine3, DVec3};
 use glam::{DMat4, DQuat};
 
 /// The transform of a `Transform` node: translation · center · rotation · scale (along scaleOrientation) · −center.
-/// Inventor calls the scale `scaleFactor`, VRML and X3D `scale`.
-pub(crate) fn of_transform(node: &Node) -> DAffine3 {
+/// Inventor calls the scale `scaleFactor`, VRML and X3D `scale`. Angles are in units of `radians`.
+pub(crate) fn of_transform(node: &Node, radians: f64) -> DAffine3 {
     let vector = |name, default: f64| DVec3::from(node.vector(name, [default; 3]));
     let center = vector("center", 0.0);
     let scale_name = if node.field("scaleFactor").is_some() { "scaleFactor" } else { "scale" };
     let scale = vector(scale_name, 1.0);
-    let oriented = rotation(node, "scaleOrientation");
+    let oriented = rotation(node, "scaleOrientation", radians);
     DAffine3::from_translation(vector("translation", 0.0) + center)
-        * DAffine3::from_quat(rotation(node, "rotation"))
+        * DAffine3::from_quat(rotation(node, "rotation", radians))
         * DAffine3::from_quat(oriented)
         * DAffine3::from_scale(scale)
         * DAffine3::from_quat(oriented.inverse())
         * DAffine3::from_translation(-center)
 }
 
-/// An axis with an angle in radians.
-pub(crate) fn rotation(node: &Node, name: &str) -> DQuat {
+/// An axis with an angle in units of `radians`.
+pub(crate) fn rotation(node: &Node, name: &str, radians: f64) -> DQuat {
     match *node.numbers(name) {
         [x, y, z, angle, ..] if angle.is_finite() => DVec3::new(x, y, z)
             .try_normalize()
-            .map_or(DQuat::IDENTITY, |axis| DQuat::from_axis_angle(axis, angle)),
+            .map_or(DQuat::IDENTITY, |axis| DQuat::from_axis_angle(axis, angle * radians)),
         _ => DQuat::IDENTITY,
     }
 }

@@ -11,5 +11,6 @@ pub(crate) mod matrix;
 pub(crate) mod nurbs;
 pub(crate) mod polygons;
 pub(crate) mod primitives;
+pub(crate) mod prototypes;
 pub(crate) mod stage;
 pub(crate) mod text;

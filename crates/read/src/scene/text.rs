@@ -63,11 +63,8 @@ impl Parser<'_> {
     /// UNIT category name factor.
     fn unit(&mut self) {
         let (category, _name, factor) = (self.lexer.next(), self.lexer.next(), self.lexer.next());
-        if let (Token::Word("length"), Token::Number(factor)) = (category, factor)
-            && factor > 0.0
-            && factor.is_finite()
-        {
-            self.graph.millimetres = Some(1000.0 * factor);
+        if let (Token::Word(category), Token::Number(factor)) = (category, factor) {
+            self.graph.unit(category, factor);
         }
     }
 
