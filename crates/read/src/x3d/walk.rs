@@ -38,12 +38,15 @@ pub(super) struct Place<'n> {
     pub name: &'n str,
 }
 
+/// A colour, and what a node consists of when it is used in it.
+type Coloured = (Option<Color>, Vec<Placed>);
+
 pub(super) struct Walk<'a> {
     pub graph: &'a Graph,
     pub stage: &'a mut Stage,
     uses: Vec<u32>,
     /// What nodes used more than once consist of, by the colour they were used in.
-    parts: FxHashMap<NodeIx, Vec<(Option<Color>, Vec<Placed>)>>,
+    parts: FxHashMap<NodeIx, Vec<Coloured>>,
     /// Kinds of nodes about which something has been said.
     noted: FxHashSet<String>,
     /// Nodes being visited: one that is used inside itself would never end.
