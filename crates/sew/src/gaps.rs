@@ -1,0 +1,171 @@
+//! How far borders are from each other: the merge tolerance `auto`, and what `info` shows of it.
+//!
+//! At three places of every border the distance to the nearest other border is measured. Gaps that the file means to be
+//! joints crowd at the bottom of the histogram, real openings at its top; between them is a valley. The tolerance lies
+//! in the widest valley (as a ratio) between the file's own resolution and [`LARGEST_GAP`] of the part, near its lower end.
+
+use crate::border::{Borders, edge_uses};
+use crate::foot::foot;
+use crate::natural::add_natural_borders;
+use chordal_brep::Part;
+use chordal_nurbs::Box3;
+use rayon::prelude::*;
+
+/// No joint of a part is wider than this share of its diagonal.
+const LARGEST_GAP: f64 = 2e-3;
+/// What coordinates are good for where the file says nothing, as a share of the diagonal: files with six digits.
+const RESOLUTION: f64 = 1e-6;
+/// A valley is clear where its upper end is so many times its lower one.
+const CLEAR: f64 = 4.0;
+/// The tolerance lies so many times above the largest gap to be sewn: ends of edges are off by more than their middles.
+const MARGIN: f64 = 3.0;
+
+/// Gaps between two powers of ten.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GapBin {
+    /// Gaps from here (zero in the first bin) up to ten times `below / 10`.
+    pub from: f64,
+    pub below: f64,
+    pub count: usize,
+}
+
+/// How a merge tolerance was found; lengths in the part's own units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AutoTolerance {
+    pub tolerance: f64,
+    /// What the file says of its accuracy, or what its coordinates are taken to be good for.
+    pub resolution: f64,
+    /// The valley between gaps to be sewn and real openings.
+    pub valley: [f64; 2],
+    /// The valley is wide enough to be trusted.
+    pub clear: bool,
+    /// Gaps measured below the valley and above it.
+    pub gaps: [usize; 2],
+    /// The histogram, a bin for every power of ten that has gaps.
+    pub histogram: Vec<GapBin>,
+}
+
+/// Measures the gaps of a part; `None` where fewer than two edges are used by one face only.
+pub fn gap_survey(part: &Part) -> Option<AutoTolerance> {
+    let mut whole = part.clone();
+    add_natural_borders(&mut whole);
+    let uses = edge_uses(&whole);
+    survey(&whole, &Borders::new(&whole, &uses))
+}
+
+/// The survey of borders that are collected already.
+pub(crate) fn survey(part: &Part, borders: &Borders) -> Option<AutoTolerance> {
+    if borders.all.len() < 2 {
+        return None;
+    }
+    let box3 = Box3::from_points(borders.all.iter().flat_map(|b| b.points.iter().copied()));
+    let mut gaps = nearest_gaps(borders);
+    gaps.sort_unstable_by(f64::total_cmp);
+    Some(choose(&gaps, part.uncertainty, box3.diagonal()))
+}
+
+/// The distances of three places of every border from the nearest other border.
+fn nearest_gaps(borders: &Borders) -> Vec<f64> {
+    (0..borders.all.len())
+        .into_par_iter()
+        .with_min_len(64)
+        .flat_map_iter(|b| {
+            let range = borders.all[b].range;
+            [0.25, 0.5, 0.75].map(|s| nearest_other(borders, b, range.start + s * range.length()))
+        })
+        .flatten()
+        .collect()
+}
+
+/// The distance of a border's point from the nearest other border.
+pub(crate) fn nearest_other(borders: &Borders, border: usize, t: f64) -> Option<f64> {
+    let p = borders.all[border].curve.point(t);
+    // Chords of one border in a row are one valley: the curve is asked only where its chord is near enough.
+    let mut best = f64::INFINITY;
+    borders.tree.nearest(p, f64::INFINITY, |chord| {
+        let (b, k) = borders.chords[chord as usize];
+        if b as usize == border {
+            return None;
+        }
+        let other = &borders.all[b as usize];
+        let k = k as usize;
+        if borders.distance(chord, p) >= best {
+            return None;
+        }
+        let (d, s) = crate::foot::segment_distance(p, other.points[k], other.points[k + 1]);
+        let exact = if other.is_straight() {
+            d
+        } else {
+            foot(&other.curve, other.range, p, other.t[k] + (other.t[k + 1] - other.t[k]) * s).1
+        };
+        best = best.min(exact);
+        Some(exact)
+    });
+    best.is_finite().then_some(best)
+}
+
+/// The tolerance from sorted gaps.
+fn choose(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64) -> AutoTolerance {
+    let cap = LARGEST_GAP * diagonal;
+    let resolution = uncertainty.filter(|u| *u > 0.0 && u.is_finite()).unwrap_or(RESOLUTION * diagonal);
+    let resolution = resolution.min(cap / CLEAR).max(16.0 * f64::EPSILON * diagonal);
+    let mut values = vec![resolution];
+    values.extend(gaps.iter().copied().filter(|&g| g > resolution && g < cap));
+    values.push(gaps.iter().copied().find(|&g| g >= cap).map_or(cap, |g| g.min(cap * CLEAR)));
+    let ratio = |w: &[f64]| w[1] / w[0];
+    // Of two that are alike the upper one: it sews more.
+    let widest = values.windows(2).map(ratio).fold(1.0, f64::max);
+    let valley = values.windows(2).rev().find(|w| ratio(w) >= widest * (1.0 - 1e-9)).unwrap_or(&values[..2]);
+    let clear = widest >= CLEAR;
+    let tolerance = if clear { valley[0] * widest.sqrt().min(MARGIN) } else { resolution };
+    let below = gaps.partition_point(|&g| g <= tolerance);
+    AutoTolerance {
+        tolerance,
+        resolution,
+        valley: [valley[0], valley[1]],
+        clear,
+        gaps: [below, gaps.len() - below],
+        histogram: histogram(gaps, resolution),
+    }
+}
+
+fn histogram(gaps: &[f64], resolution: f64) -> Vec<GapBin> {
+    let floor = 10_f64.powf(resolution.log10().floor() - 3.0);
+    let decade = |g: f64| if g < floor { f64::NEG_INFINITY } else { g.log10().floor() };
+    gaps.chunk_by(|a, b| decade(*a) == decade(*b))
+        .map(|chunk| {
+            let low = decade(chunk[0]);
+            let (from, below) =
+                if low.is_finite() { (10_f64.powf(low), 10_f64.powf(low + 1.0)) } else { (0.0, floor) };
+            GapBin { from, below, count: chunk.len() }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tolerance_lies_in_the_valley() {
+        let mut gaps: Vec<f64> = (0..90).map(|i| 1e-6 * f64::from(i)).collect();
+        gaps.extend([0.5, 0.7, 3.0]);
+        let found = choose(&gaps, None, 100.0);
+        assert!(found.clear);
+        assert!(found.tolerance > 1e-4 && found.tolerance < 0.2, "{found:?}");
+        assert_eq!(found.gaps, [90, 3]);
+        assert_eq!(found.histogram.iter().map(|b| b.count).sum::<usize>(), 93);
+        // Joints of 0.01 are loose, and there is nothing else before 0.2.
+        let loose: Vec<f64> = (0..90).map(|i| 0.01 * f64::from(i) / 90.0).chain([5.0]).collect();
+        let found = choose(&loose, Some(1e-3), 100.0);
+        assert!(found.tolerance > 0.0099 && found.tolerance < 0.2, "{found:?}");
+    }
+
+    #[test]
+    fn without_a_valley_the_file_is_taken_at_its_word() {
+        let gaps: Vec<f64> = (0..60).map(|i| 1e-4 * 1.2_f64.powi(i)).collect();
+        let found = choose(&gaps, Some(2e-4), 100.0);
+        assert!(!found.clear);
+        assert_eq!(found.tolerance, 2e-4);
+    }
+}

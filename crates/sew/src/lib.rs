@@ -1,0 +1,35 @@
+//! Sewing: loose trimmed surfaces become bodies whose faces share edges.
+//!
+//! Many formats have no topology, each face is an island. Before meshing, shared edges are inferred from the geometry of
+//! the edges that one face alone uses, so that the stages behind share vertices by identity as they do for solids:
+//!
+//! ```text
+//!   borders ([`border`])       edges with one use, as polylines in a tree; faces without loops get their natural ones
+//!   tolerance ([`gaps`])       `auto`: the file's own resolution and the valley in the histogram of nearest gaps
+//!   vertices ([`cluster`])     merged within the tolerance, transitively as long as nobody moves further than that
+//!   T-ends ([`cut`])           an edge is cut where a vertex of another one lies on it: overlaps, chains
+//!   pieces ([`pair`])          pieces between the same two vertices that run along each other become one edge
+//!   rebuild ([`rebuild`])      coedges of several faces refer to one edge
+//!   shells ([`shells`])        faces agree which way is out; what closes becomes a solid
+//! ```
+//!
+//! Edges that are used twice are never touched. The grid of the 2001 paper (Kahlesz, Balázs and Klein, section 8) is a
+//! tree here, because the sizes of edges in one file differ by many orders of magnitude.
+
+mod border;
+mod cluster;
+mod cut;
+mod foot;
+mod gaps;
+mod natural;
+mod orient;
+mod pair;
+mod rebuild;
+mod report;
+mod run;
+mod shells;
+mod tree;
+
+pub use gaps::{AutoTolerance, GapBin, gap_survey};
+pub use report::{OpenEdge, SewReport};
+pub use run::{SewTolerance, has_topology, sew_part};

@@ -1,0 +1,161 @@
+//! Connected shells of the faces that were sewn, and the bodies they make: what closes is a solid.
+
+use crate::orient::Oriented;
+use crate::rebuild::Link;
+use chordal_brep::{Body, BodyKind, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source};
+
+/// What became of the shells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Shells {
+    pub shells: usize,
+    pub closed: usize,
+}
+
+/// The body of every face; faces without one share the number after the last.
+pub(crate) fn body_of_faces(part: &Part) -> Vec<u32> {
+    let mut body = vec![part.bodies.len() as u32; part.faces.len()];
+    for (b, of_body) in part.bodies.iter().enumerate().rev() {
+        for shell in &of_body.shells {
+            part.shells[shell.index()].faces.iter().for_each(|f| body[f.index()] = b as u32);
+        }
+    }
+    body
+}
+
+/// Which faces belong to shells that have a border in them, or to none; faces of several shells are left alone.
+pub(crate) fn affected(part: &Part, has_border: &[bool]) -> Vec<bool> {
+    let mut uses = vec![0_u32; part.faces.len()];
+    part.shells.iter().flat_map(|s| &s.faces).for_each(|f| uses[f.index()] += 1);
+    let mut affected: Vec<bool> = uses.iter().map(|&n| n == 0).collect();
+    for shell in &part.shells {
+        let touched = shell.faces.iter().any(|f| has_border[f.index()]);
+        if touched && shell.faces.iter().all(|f| uses[f.index()] == 1) {
+            shell.faces.iter().for_each(|f| affected[f.index()] = true);
+        }
+    }
+    affected
+}
+
+/// Replaces the shells of the affected faces by their connected components, and their bodies by what these make.
+pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, links: &[Link]) -> Shells {
+    let body_of = body_of_faces(part);
+    let mut members: Vec<Vec<FaceId>> = vec![Vec::new(); oriented.components];
+    for f in (0..part.faces.len()).filter(|&f| affected[f]) {
+        members[oriented.component[f] as usize].push(FaceId::from(f));
+    }
+    members.retain(|m| !m.is_empty());
+    let closed: Vec<bool> = closed_components(part, &members, links);
+    let (shell_source, said_closed) = old_shells(part);
+    keep_unaffected(part, affected);
+    let first_new = part.shells.len();
+    let mut found = Shells::default();
+    // Of the body with the lowest number among a component's faces.
+    let mut bodies: Vec<(u32, usize)> = Vec::new();
+    for (k, faces) in members.iter().enumerate() {
+        let body = faces.iter().map(|f| body_of[f.index()]).min().expect("components have faces");
+        bodies.push((body, k));
+        // A shell that the file calls closed stays called so if it is still in one piece.
+        let whole = said_closed[faces[0].index()] == Some(faces.len());
+        let source = shell_source[faces[0].index()];
+        part.shells.push(Shell { faces: faces.clone(), closed: closed[k] || whole, source });
+        found.shells += 1;
+        found.closed += usize::from(closed[k]);
+    }
+    bodies.sort_unstable();
+    for group in bodies.chunk_by(|a, b| a.0 == b.0) {
+        let shells: Vec<(ShellId, bool)> =
+            group.iter().map(|&(_, k)| (ShellId::from(first_new + k), closed[k])).collect();
+        add_bodies(part, group[0].0 as usize, &shells);
+    }
+    part.bodies.retain(|b| !b.shells.is_empty());
+    found
+}
+
+/// Per face: where its shell came from, and, where the file calls that closed, how many faces it has.
+fn old_shells(part: &Part) -> (Vec<Source>, Vec<Option<usize>>) {
+    let mut source = vec![Source::default(); part.faces.len()];
+    let mut closed = vec![None; part.faces.len()];
+    for shell in &part.shells {
+        for f in &shell.faces {
+            source[f.index()] = shell.source;
+            closed[f.index()] = shell.closed.then_some(shell.faces.len());
+        }
+    }
+    (source, closed)
+}
+
+/// Drops shells of affected faces; bodies keep the others. The order of bodies stays, empty ones included.
+fn keep_unaffected(part: &mut Part, affected: &[bool]) {
+    let mut number = vec![None; part.shells.len()];
+    let mut kept = Vec::new();
+    for (s, shell) in std::mem::take(&mut part.shells).into_iter().enumerate() {
+        if !shell.faces.iter().any(|f| affected[f.index()]) {
+            number[s] = Some(ShellId::from(kept.len()));
+            kept.push(shell);
+        }
+    }
+    part.shells = kept;
+    for body in &mut part.bodies {
+        body.shells = body.shells.iter().filter_map(|s| number[s.index()]).collect();
+    }
+}
+
+/// Gives new shells to body `old` (or to new ones of its name): every closed one a solid, the open ones a sheet.
+fn add_bodies(part: &mut Part, old: usize, shells: &[(ShellId, bool)]) {
+    let template = part.bodies.get(old).cloned().unwrap_or_else(|| Body {
+        kind: BodyKind::Sheet,
+        shells: Vec::new(),
+        name: String::new(),
+        color: None,
+        layer: None,
+        source: part.source,
+    });
+    let mut new: Vec<Body> = Vec::new();
+    for &(shell, _) in shells.iter().filter(|s| s.1) {
+        new.push(Body { kind: BodyKind::Solid, shells: vec![shell], ..template.clone() });
+    }
+    let open: Vec<ShellId> = shells.iter().filter(|s| !s.1).map(|s| s.0).collect();
+    if !open.is_empty() {
+        // A solid that did not close stays what the file calls it.
+        let kind = if new.is_empty() { template.kind } else { BodyKind::Sheet };
+        new.push(Body { kind, shells: open, ..template.clone() });
+    }
+    let mut new = new.into_iter();
+    if let Some(body) = part.bodies.get_mut(old).filter(|b| b.shells.is_empty())
+        && let Some(first) = new.next()
+    {
+        *body = first;
+    }
+    part.bodies.extend(new);
+}
+
+/// A component is closed where every side of each of its faces is linked to another one of them.
+fn closed_components(part: &Part, members: &[Vec<FaceId>], links: &[Link]) -> Vec<bool> {
+    let mut linked = vec![0_usize; part.faces.len()];
+    links.iter().flat_map(|l| l.faces).for_each(|f| linked[f as usize] += 1);
+    members.iter().map(|faces| faces.iter().all(|f| is_enclosed(part, *f, linked[f.index()]))).collect()
+}
+
+fn is_enclosed(part: &Part, face: FaceId, linked: usize) -> bool {
+    let face = &part.faces[face.index()];
+    let FaceGeometry::Surface(surface) = &face.geometry else { return false };
+    let mut sides = 0;
+    for a_loop in &face.loops {
+        match a_loop {
+            Loop::Vertex(_) => {}
+            Loop::Polygon { .. } => return false,
+            Loop::Edges { coedges, .. } => {
+                sides += coedges.iter().filter(|c| part.edges[c.edge.index()].curve.is_some()).count();
+            }
+        }
+    }
+    if sides == 0 {
+        // The whole surface: closed where it has no side at all.
+        let poles = surface.poles();
+        let closed = |axis: usize| {
+            surface.periods()[axis].is_some() || poles.iter().filter(|p| p.axis == axis).count() == 2
+        };
+        return closed(0) && closed(1);
+    }
+    sides == linked
+}
