@@ -1,6 +1,6 @@
 //! The command line: what can be asked, with its units and defaults.
 
-use chordal::{Bound, Format, JobOptions, Strategy, Tolerance, Unit, UpAxis};
+use chordal::{Bound, Format, JobOptions, Sew, Strategy, Tolerance, Unit, UpAxis};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -93,6 +93,11 @@ pub struct AccuracyArgs {
     /// Whether the error of a facet is proven by an upper bound or estimated from samples.
     #[arg(long, value_enum, default_value = "proven")]
     pub bound: BoundArg,
+    /// Sew edges that one face alone uses to the borders of other faces that are this near: a length (a bare number is in
+    /// mm), `auto` (by the resolution of the file and the histogram of its gaps, see `info`) or `off` [default: auto for
+    /// parts no two faces of which share an edge, off for others].
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub sew: Option<Sew>,
     /// Threads [default: one per core]. The output is the same for any number.
     #[arg(long, value_name = "N", value_parser = parse_jobs)]
     pub jobs: Option<usize>,
@@ -188,6 +193,7 @@ impl AccuracyArgs {
             .with_angle(self.angle.0)
             .with_max_edge(self.max_edge)
             .with_strategy(self.strategy)
+            .with_sew(self.sew.unwrap_or_default())
             .with_bound(bound)
             .with_jobs(self.jobs)
             .with_face_timeout(self.face_timeout.0)

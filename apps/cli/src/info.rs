@@ -2,7 +2,7 @@
 
 use crate::args::InfoArgs;
 use crate::exit::{Exit, print, say};
-use chordal::{Info, NodeInfo};
+use chordal::{GapSurvey, Info, NodeInfo, PartInfo};
 use std::fmt::Write;
 
 pub fn run(args: &InfoArgs) -> Exit {
@@ -73,7 +73,24 @@ fn parts(out: &mut String, info: &Info) {
         let uncertainty = part.uncertainty.map_or_else(String::new, |u| format!("; uncertainty {u}"));
         let name = if part.name.is_empty() { "(no name)" } else { &part.name };
         let _ = writeln!(out, "  {name} {} × {}: {}{uncertainty}", part.id, part.instances, holds.join(", "));
+        if let Some(survey) = part.sewing.as_ref().filter(|_| part.open_edges > 0) {
+            sewing(out, part, survey);
+        }
     }
+}
+
+/// What `--sew auto` would do, and the histogram it rests on.
+fn sewing(out: &mut String, part: &PartInfo, survey: &GapSurvey) {
+    let shared = if part.topology { "" } else { ", no edge is shared by two faces" };
+    let sure = if survey.clear { "" } else { ", the valley is not clear" };
+    let _ = writeln!(
+        out,
+        "    open edges {}{shared}; --sew auto: {:.3e} mm (resolution {:.1e}, valley {:.1e} to {:.1e}{sure})",
+        part.open_edges, survey.tolerance, survey.resolution, survey.valley[0], survey.valley[1]
+    );
+    let bins: Vec<String> =
+        survey.histogram.iter().map(|(_, below, count)| format!("<{below:.0e}: {count}")).collect();
+    let _ = writeln!(out, "    gaps to the nearest other border, mm  {}", bins.join("  "));
 }
 
 /// Leaves of one part under one name are counted instead of repeated.

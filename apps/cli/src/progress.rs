@@ -28,6 +28,7 @@ impl Bar {
         let bar = self.0.clone();
         Arc::new(move |progress| match progress {
             Progress::Reading => bar.set_message("reading"),
+            Progress::Sewing => bar.set_message("sewing"),
             Progress::Measuring => bar.set_message("measuring"),
             Progress::Meshing { done, faces } => {
                 bar.set_message("meshing");

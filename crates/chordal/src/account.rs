@@ -8,7 +8,9 @@ use crate::placement::PartUse;
 use crate::process::peak_memory;
 use crate::report::*;
 use crate::resolve::Resolved;
+use crate::sewing::SewingEntry;
 use chordal_brep::{Face, Model, Part};
+use chordal_sew::SewReport;
 use chordal_tessellate::{Bound, FaceReport};
 use chordal_write::{Format, WriteSummary};
 use std::path::Path;
@@ -37,8 +39,13 @@ impl Ledger {
     /// Writes times, memory and threads into the report.
     pub fn close(self, report: &mut Report) {
         let s = &mut report.seconds;
-        (s.read, s.resolve, s.audit, s.write) =
-            (self.seconds.read, self.seconds.resolve, self.seconds.audit, self.seconds.write);
+        (s.read, s.sew, s.resolve, s.audit, s.write) = (
+            self.seconds.read,
+            self.seconds.sew,
+            self.seconds.resolve,
+            self.seconds.audit,
+            self.seconds.write,
+        );
         s.total = self.started.elapsed().as_secs_f64();
         report.peak_memory = peak_memory();
         report.threads = rayon::current_num_threads();
@@ -51,6 +58,7 @@ struct Entry<'a> {
     part_use: &'a PartUse,
     meshed: &'a MeshedPart,
     audited: &'a AuditedPart,
+    sewn: Option<&'a SewReport>,
 }
 
 impl Entry<'_> {
@@ -58,12 +66,19 @@ impl Entry<'_> {
     fn faces(&self) -> impl Iterator<Item = (&Face, Option<&FaceReport>)> {
         self.part.faces.iter().enumerate().map(|(i, face)| (face, self.meshed.report.faces.get(i)))
     }
+
+    /// What sewing moved the border of a face by is looseness of the file as well.
+    fn with_moves(&self, index: usize, of_face: &FaceReport) -> FaceReport {
+        let moved = self.sewn.and_then(|s| s.face_moves.get(index)).copied().unwrap_or(0.0);
+        FaceReport { gap: of_face.gap.max(moved), ..of_face.clone() }
+    }
 }
 
 /// Adds everything up. Times of the stages outside the parts are added by the ledger.
 pub(crate) fn account(
     job: &Job,
     model: &Model,
+    sewn: &[Option<SewReport>],
     resolved: &Resolved,
     parts: &[MeshedPart],
     audits: &[AuditedPart],
@@ -73,7 +88,14 @@ pub(crate) fn account(
         .iter()
         .zip(&resolved.uses)
         .zip(parts.iter().zip(audits))
-        .map(|((part, part_use), (meshed, audited))| Entry { part, part_use, meshed, audited })
+        .zip(sewn)
+        .map(|(((part, part_use), (meshed, audited)), sewn)| Entry {
+            part,
+            part_use,
+            meshed,
+            audited,
+            sewn: sewn.as_ref(),
+        })
         .collect();
     let mut report = Report {
         schema: REPORT_SCHEMA.into(),
@@ -87,15 +109,19 @@ pub(crate) fn account(
     for (entry, options) in entries.iter().zip(&resolved.parts) {
         add_part(&mut report, entry, options.tolerance);
         add_shells(&mut report, entry);
+        if let Some(sewn) = entry.sewn {
+            report.sewing.push(SewingEntry::new(entry.part, sewn, entry.part_use.scale));
+        }
         if entry.part_use.instances == 0 {
             report.warnings.push(never_placed(entry.part));
             continue;
         }
         let missing =
             FaceReport { failed: Some("nothing was reported about it".into()), ..FaceReport::default() };
-        entry
-            .faces()
-            .for_each(|(face, of_face)| add_face(&mut report, entry, face, of_face.unwrap_or(&missing)));
+        for (index, (face, of_face)) in entry.faces().enumerate() {
+            let of_face = entry.with_moves(index, of_face.unwrap_or(&missing));
+            add_face(&mut report, entry, face, &of_face);
+        }
     }
     report.watertight = report.shells.watertight == report.shells.closed_in_file;
     report.proven_error = proven_error(&report, resolved.rounding);
@@ -122,6 +148,7 @@ fn options_report(job: &Job, resolved: &Resolved) -> OptionsReport {
         angle: options.angle.map(f64::to_degrees),
         max_edge: options.max_edge,
         strategy: options.strategy.name().into(),
+        sew: options.sew.to_string(),
         bound: bound_name(options.bound).into(),
         face_timeout: options.face_timeout.map(|t| t.as_secs_f64()),
         strict: options.strict,
@@ -129,7 +156,7 @@ fn options_report(job: &Job, resolved: &Resolved) -> OptionsReport {
 }
 
 fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
-    let Entry { part, part_use, meshed, audited } = entry;
+    let Entry { part, part_use, meshed, audited, .. } = entry;
     let instances = part_use.instances;
     let stages = &meshed.report.seconds;
     report.seconds.heal += stages.heal;

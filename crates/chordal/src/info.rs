@@ -4,8 +4,10 @@ use crate::gaps::{Gap, gaps};
 use crate::names::{entity_id, face_kind, loose_kind};
 use crate::placement::{PartUse, part_uses};
 use crate::report::{FailedFace, LooseEntry, WarningEntry};
+use crate::sewing::GapSurvey;
 use crate::tight_box::{edge_box, tight_box};
 use chordal_brep::{BodyKind, FaceGeometry, Model, NodeId, Part};
+use chordal_sew::{gap_survey, has_topology, open_edges};
 use chordal_tessellate::Cancel;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -71,6 +73,12 @@ pub struct PartInfo {
     /// The file's own statement of accuracy, in the part's units.
     pub uncertainty: Option<f64>,
     pub gaps: GapInfo,
+    /// Edges that one face alone uses.
+    pub open_edges: usize,
+    /// Some edge is shared by two faces: the file has topology, and is sewn only where that is asked for.
+    pub topology: bool,
+    /// How far the open edges are from each other, and the tolerance that `--sew auto` takes; millimetres.
+    pub sewing: Option<GapSurvey>,
 }
 
 /// One occurrence in the assembly tree.
@@ -136,6 +144,9 @@ fn part_info(part: &Part, part_use: &PartUse) -> PartInfo {
             curve_to_surface: length(gaps.curve_to_surface),
             curve_to_surface_at: entity_id(gaps.curve_to_surface.source),
         },
+        open_edges: open_edges(part),
+        topology: has_topology(part),
+        sewing: gap_survey(part).map(|survey| GapSurvey::new(&survey, part_use.scale)),
     }
 }
 

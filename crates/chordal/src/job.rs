@@ -1,8 +1,8 @@
 //! The whole job, top to bottom:
 //!
 //! ```text
-//! read → resolve → heal parameters → discretise edges → size → place points → trim + triangulate → stitch → audit → write
-//!        └ here    └──────────────────── chordal_tessellate, once per part ─────────────────────┘
+//! read → sew → resolve → heal parameters → discretise edges → size → place points → trim + triangulate → stitch → audit → write
+//!              └ here    └──────────────────── chordal_tessellate, once per part ─────────────────────┘
 //! ```
 
 use crate::account::{Ledger, account};
@@ -10,6 +10,7 @@ use crate::auditing::audit_parts;
 use crate::progress::FaceCounter;
 use crate::resolve::{Resolved, resolve};
 use crate::scene::scene;
+use crate::sewing::sew_model;
 use crate::{JobError, JobOptions, OnProgress, Progress, Report};
 use chordal_brep::Model;
 use chordal_mesh::{PartMesh, Scene};
@@ -111,25 +112,30 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     // 1. Read.
     job.tell(Progress::Reading);
     let format = output_format(job)?;
-    let model = ledger.time(|s| &mut s.read, || read_model(&job.input))?;
+    let mut model = ledger.time(|s| &mut s.read, || read_model(&job.input))?;
     job.check_cancelled()?;
 
-    // 2. Resolve: what the options mean in the units of every part.
+    // 2. Sew: faces without neighbours get them by the geometry of their borders.
+    job.tell(Progress::Sewing);
+    let sewn = ledger.time(|s| &mut s.sew, || sew_model(&mut model, job.options.sew));
+    job.check_cancelled()?;
+
+    // 3. Resolve: what the options mean in the units of every part.
     job.tell(Progress::Measuring);
     let resolved =
         ledger.time(|s| &mut s.resolve, || resolve(&model, &job.options, format, &job.input, &job.cancel))?;
 
-    // 3. Mesh every placed part once: heal, discretise edges, size, place, trim and triangulate, stitch.
+    // 4. Mesh every placed part once: heal, discretise edges, size, place, trim and triangulate, stitch.
     let mut parts = mesh_parts(&model, &resolved, &job.cancel, &|progress| job.tell(progress));
     job.check_cancelled()?;
 
-    // 4. Audit: recompute every promise from the model and the meshes.
+    // 5. Audit: recompute every promise from the model and the meshes.
     job.tell(Progress::Auditing);
     let audits = ledger.time(|s| &mut s.audit, || audit_parts(&model, &resolved, &mut parts));
     job.check_cancelled()?;
 
-    // 5. Account: what was done, what is proven, what was left undone.
-    let mut report = account(job, &model, &resolved, &parts, &audits);
+    // 6. Account: what was done, what is proven, what was left undone.
+    let mut report = account(job, &model, &sewn, &resolved, &parts, &audits);
     if report.triangles == 0 {
         let (faces, first) = (report.faces.total, report.undone.into_iter().next());
         let first = first.unwrap_or_else(|| "they have no area, or are never placed".into());
@@ -139,7 +145,7 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
         return Err(JobError::Strict { path: job.input.clone(), undone: report.undone });
     }
 
-    // 6. Write.
+    // 7. Write.
     job.tell(Progress::Writing);
     let scene = scene(&model, parts.iter().map(|p| p.mesh.clone()).collect(), format == Some(Format::Glb));
     if let (Some(output), Some(format)) = (&job.output, format) {

@@ -34,6 +34,7 @@ mod quantity;
 pub mod report;
 mod resolve;
 mod scene;
+mod sewing;
 mod tight_box;
 mod whole_file;
 
@@ -50,6 +51,7 @@ pub use progress::{OnProgress, Progress};
 pub use quantity::{QuantityError, Tolerance, parse_angle, parse_length};
 pub use report::{REPORT_SCHEMA, Report};
 pub use resolve::{Resolved, resolve};
+pub use sewing::{GapSurvey, OpenEntry, Sew, SewingEntry, sew_model};
 pub use tight_box::{TightBox, edge_box, tight_box};
 pub use whole_file::write_whole;
 
@@ -59,6 +61,7 @@ pub use chordal_document as document;
 pub use chordal_mesh as mesh;
 pub use chordal_nurbs as nurbs;
 pub use chordal_read as read;
+pub use chordal_sew as sew;
 pub use chordal_tessellate as tessellate;
 pub use chordal_tessellate::{Bound, Cancel, Cut, Strategy, StrategyEntry};
 pub use chordal_write as write;

@@ -1,6 +1,6 @@
 //! What a job is asked for, in millimetres and radians.
 
-use crate::Tolerance;
+use crate::{Sew, Tolerance};
 use chordal_tessellate::{Bound, Strategy};
 use chordal_write::{Format, Unit, UpAxis};
 use std::time::Duration;
@@ -21,6 +21,8 @@ pub struct JobOptions {
     /// Longest mesh edge, in millimetres.
     pub max_edge: Option<f64>,
     pub strategy: Strategy,
+    /// Whether loose faces are sewn before they are meshed.
+    pub sew: Sew,
     pub bound: Bound,
     /// Threads; `None`: one per core. The result is the same bytes for any number.
     pub jobs: Option<usize>,
@@ -45,6 +47,7 @@ impl Default for JobOptions {
             angle: Some(20_f64.to_radians()),
             max_edge: None,
             strategy: Strategy::Default,
+            sew: Sew::default(),
             bound: Bound::Proven,
             jobs: None,
             strict: false,
@@ -72,6 +75,10 @@ impl JobOptions {
     }
     pub fn with_strategy(mut self, strategy: Strategy) -> Self {
         self.strategy = strategy;
+        self
+    }
+    pub fn with_sew(mut self, sew: Sew) -> Self {
+        self.sew = sew;
         self
     }
     pub fn with_bound(mut self, bound: Bound) -> Self {

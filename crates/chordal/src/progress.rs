@@ -10,6 +10,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[non_exhaustive]
 pub enum Progress {
     Reading,
+    /// Shared edges of loose faces are being inferred.
+    Sewing,
     /// The tolerance is being resolved: the box of the model.
     Measuring,
     /// So many of the distinct faces are done.

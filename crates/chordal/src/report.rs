@@ -2,6 +2,7 @@
 //!
 //! Lengths are millimetres, angles degrees, times seconds. A number that is not known is `null`.
 
+use crate::sewing::SewingEntry;
 use serde::{Deserialize, Serialize};
 
 /// The name and version of the report's schema. The number rises when a field changes its meaning or goes.
@@ -41,6 +42,8 @@ pub struct Report {
     /// Rounds in which faces asked for finer edges, the most of any part.
     pub rounds: usize,
     pub parts: Vec<PartEntry>,
+    /// What sewing did, of every part that was sewn.
+    pub sewing: Vec<SewingEntry>,
     /// Curves and points of the file that belong to no face.
     pub loose: Vec<LooseEntry>,
     /// Triangles that were in the file already and were passed through: nothing is proven about them.
@@ -77,6 +80,8 @@ pub struct OptionsReport {
     pub angle: Option<f64>,
     pub max_edge: Option<f64>,
     pub strategy: String,
+    /// Merge tolerance of sewing as asked for ("auto where loose", "auto", "off", "0.01 mm").
+    pub sew: String,
     pub bound: String,
     pub face_timeout: Option<f64>,
     pub strict: bool,
@@ -184,6 +189,8 @@ pub struct OutputReport {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Seconds {
     pub read: f64,
+    /// Sewing of loose faces.
+    pub sew: f64,
     /// Resolving the tolerance: the box of the model.
     pub resolve: f64,
     pub heal: f64,

@@ -161,7 +161,8 @@ mod tests {
     use proptest::prelude::*;
 
     fn corners(points: &[[f64; 3]]) -> Vec<Corner> {
-        let corner = |(i, &p): (usize, &[f64; 3])| Corner { vertex: i as u32, point: p.into(), anchored: false };
+        let corner =
+            |(i, &p): (usize, &[f64; 3])| Corner { vertex: i as u32, point: p.into(), anchored: false };
         points.iter().enumerate().map(corner).collect()
     }
 
@@ -170,7 +171,9 @@ mod tests {
         let row: Vec<[f64; 3]> = (0..30).map(|i| [0.9 * f64::from(i), 0.0, 0.0]).collect();
         let found = cluster(&corners(&row), &vec![Vec::new(); 30], 1.0);
         assert!(found.all.len() > 8, "{}", found.all.len());
-        let moved = |c: &Cluster| c.members.iter().map(|&m| DVec3::from(row[m as usize]).distance(c.target)).fold(0.0, f64::max);
+        let moved = |c: &Cluster| {
+            c.members.iter().map(|&m| DVec3::from(row[m as usize]).distance(c.target)).fold(0.0, f64::max)
+        };
         assert!(found.all.iter().all(|c| moved(c) <= 1.0));
     }
 

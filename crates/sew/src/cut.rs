@@ -47,7 +47,9 @@ pub(crate) fn cut(borders: &Borders, ends: &[[u32; 2]], clusters: &Clusters, tol
         .with_min_len(64)
         .flat_map_iter(|c| cuts_at(borders, ends, clusters, c, tolerance))
         .collect();
-    cuts.sort_unstable_by(|a, b| a.border.cmp(&b.border).then(a.t.total_cmp(&b.t)).then(a.cluster.cmp(&b.cluster)));
+    cuts.sort_unstable_by(|a, b| {
+        a.border.cmp(&b.border).then(a.t.total_cmp(&b.t)).then(a.cluster.cmp(&b.cluster))
+    });
     let mut pieces = Pieces::default();
     let mut at = 0;
     for (b, border) in borders.all.iter().enumerate() {
@@ -124,7 +126,8 @@ fn kept(border: &Border, ends: [u32; 2], cuts: &[Cut], tolerance: f64) -> Vec<Cu
         }
         while let Some(last) = kept.last() {
             let too_near = apart(last.t, cut.t) <= shortest
-                || last.cluster == cut.cluster && run_length(border, last.t, cut.t) <= SAME_VERTEX * tolerance;
+                || last.cluster == cut.cluster
+                    && run_length(border, last.t, cut.t) <= SAME_VERTEX * tolerance;
             if !too_near || last.distance <= cut.distance {
                 break;
             }

@@ -7,6 +7,7 @@
 use crate::border::{Borders, edge_uses};
 use crate::foot::foot;
 use crate::natural::add_natural_borders;
+use crate::polygon::add_polygon_edges;
 use chordal_brep::Part;
 use chordal_nurbs::Box3;
 use rayon::prelude::*;
@@ -49,6 +50,7 @@ pub struct AutoTolerance {
 pub fn gap_survey(part: &Part) -> Option<AutoTolerance> {
     let mut whole = part.clone();
     add_natural_borders(&mut whole);
+    add_polygon_edges(&mut whole);
     let uses = edge_uses(&whole);
     survey(&whole, &Borders::new(&whole, &uses))
 }

@@ -24,6 +24,7 @@ mod gaps;
 mod natural;
 mod orient;
 mod pair;
+mod polygon;
 mod rebuild;
 mod report;
 mod run;
@@ -32,4 +33,4 @@ mod tree;
 
 pub use gaps::{AutoTolerance, GapBin, gap_survey};
 pub use report::{OpenEdge, SewReport};
-pub use run::{SewTolerance, has_topology, sew_part};
+pub use run::{SewTolerance, has_topology, open_edges, sew_part};

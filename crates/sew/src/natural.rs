@@ -40,7 +40,9 @@ fn add_border(part: &mut Part, face: usize) -> bool {
     let poles = surface.poles();
     let is_pole = |side: Side| {
         let value = side.value(&surface);
-        poles.iter().any(|p| p.axis == side.axis && (p.value - value).abs() <= 1e-9 * domain.size()[side.axis])
+        poles
+            .iter()
+            .any(|p| p.axis == side.axis && (p.value - value).abs() <= 1e-9 * domain.size()[side.axis])
     };
     let open = |side: Side| periods[side.axis].is_none() && !is_pole(side);
     let mut corners = Corners { part, surface: &surface, source, known: Vec::new() };
@@ -182,7 +184,8 @@ mod tests {
 
     #[test]
     fn a_patch_gets_four_sides_that_are_its_own() {
-        let points = (0..9).map(|i| DVec3::new(f64::from(i / 3), f64::from(i % 3), f64::from(i * i))).collect();
+        let points =
+            (0..9).map(|i| DVec3::new(f64::from(i / 3), f64::from(i % 3), f64::from(i * i))).collect();
         let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let weights = Some((0..9).map(|i| 1.0 + f64::from(i % 4)).collect());
         let nurbs = NurbsSurface::new([2, 2], knots.clone(), knots, points, weights).unwrap();

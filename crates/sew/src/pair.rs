@@ -109,7 +109,13 @@ impl Pairing<'_> {
         let (distance, reversed) = self.along(pa, pb)?;
         let alike = (distance / (ALIKE * self.tolerance)) as u32;
         let across = u32::from(self.body[faces[0] as usize] != self.body[faces[1] as usize]);
-        Some(Candidate { a, b, distance, reversed, cost: [across, u32::from(faces[0] == faces[1]), alike, 0] })
+        Some(Candidate {
+            a,
+            b,
+            distance,
+            reversed,
+            cost: [across, u32::from(faces[0] == faces[1]), alike, 0],
+        })
     }
 
     /// How far two pieces are apart, and whether they run against each other; `None` where that is too far.

@@ -85,7 +85,14 @@ pub(crate) fn rebuild(part: &Part, decisions: &Decisions<'_>) -> Rebuilt {
             references[other as usize] = Some(Reference { reversed, ..leader });
         }
     }
-    let rebuild = Faces { part, decisions, references: &references, kept: &kept, border_of: &border_of, vertices: &vertices };
+    let rebuild = Faces {
+        part,
+        decisions,
+        references: &references,
+        kept: &kept,
+        border_of: &border_of,
+        vertices: &vertices,
+    };
     new.faces = part.faces.iter().map(|face| rebuild.face(face)).collect();
     Rebuilt { part: new, links: links(decisions, &references) }
 }
@@ -165,7 +172,8 @@ impl Faces<'_> {
         new.loops = face.loops.iter().filter_map(|l| self.one_loop(l, surface)).collect();
         let has_edges = new.loops.iter().any(|l| matches!(l, Loop::Edges { .. }));
         if had_edges && !has_edges {
-            new.geometry = FaceGeometry::Failed("all of it lies within the merge tolerance of one point".into());
+            new.geometry =
+                FaceGeometry::Failed("all of it lies within the merge tolerance of one point".into());
         }
         new
     }

@@ -7,9 +7,10 @@ use crate::gaps::{nearest_other, survey};
 use crate::natural::add_natural_borders;
 use crate::orient::orient;
 use crate::pair::{Joint, Pairing, vanishes};
+use crate::polygon::add_polygon_edges;
 use crate::rebuild::{Decisions, Link, Rebuilt, rebuild};
 use crate::report::{OpenEdge, SewReport};
-use crate::shells::{affected, body_of_faces, regroup};
+use crate::shells::{affected, body_of_faces, is_whole, regroup};
 use chordal_brep::{EdgeId, FaceId, Part};
 
 /// An edge may close into a ring where it is longer than this many tolerances.
@@ -30,12 +31,19 @@ pub fn has_topology(part: &Part) -> bool {
     edge_uses(part).iter().any(|uses| uses.len() > 1 && other_face(uses))
 }
 
+/// How many edges one face alone uses, once.
+pub fn open_edges(part: &Part) -> usize {
+    let uses = edge_uses(part);
+    part.edges.iter().zip(&uses).filter(|(edge, uses)| uses.len() == 1 && edge.curve.is_some()).count()
+}
+
 /// Infers the shared edges of a part. Where there is nothing to sew the part comes back as it is.
 ///
 /// No vertex and no point of an edge moves by more than the tolerance; edges with two uses stay as they are.
 pub fn sew_part(part: &Part, tolerance: SewTolerance) -> (Part, SewReport) {
     let mut given = part.clone();
     let natural = add_natural_borders(&mut given);
+    add_polygon_edges(&mut given);
     let uses = edge_uses(&given);
     let borders = Borders::new(&given, &uses);
     let auto = if tolerance == SewTolerance::Auto { survey(&given, &borders) } else { None };
@@ -43,8 +51,11 @@ pub fn sew_part(part: &Part, tolerance: SewTolerance) -> (Part, SewReport) {
         SewTolerance::Length(length) => length,
         SewTolerance::Auto => auto.as_ref().map_or(0.0, |a| a.tolerance),
     };
-    let none = SewReport { face_moves: vec![0.0; part.faces.len()], tolerance: length, ..SewReport::default() };
-    if !(length > 0.0 && length.is_finite()) || borders.all.is_empty() {
+    let none =
+        SewReport { face_moves: vec![0.0; part.faces.len()], tolerance: length, ..SewReport::default() };
+    let nothing = borders.all.is_empty() && !part.shells.iter().any(|s| !s.closed);
+    let unusable = !(length > 0.0 && length.is_finite());
+    if nothing || unusable && !borders.all.is_empty() {
         return (part.clone(), SewReport { auto, ..none });
     }
     let sewing = Sewing { part: &given, uses: &uses, borders: &borders, tolerance: length };
@@ -58,9 +69,12 @@ pub fn sew_part(part: &Part, tolerance: SewTolerance) -> (Part, SewReport) {
         }
     }
     let (sewn, report) = sewing.finish(best);
-    if report.sewn == 0 && natural > 0 && report.closed_shells == 0 {
-        // Natural borders that meet nothing stay what they were.
-        return (part.clone(), SewReport { auto, open: report.open, ..none });
+    if report.sewn == 0 && report.closed_shells == 0 {
+        // Borders that meet nothing stay what they were.
+        return (
+            part.clone(),
+            SewReport { auto, open_before: report.open_before, open: report.open, ..none },
+        );
     }
     (sewn, SewReport { auto, natural, ..report })
 }
@@ -188,6 +202,9 @@ impl Sewing<'_> {
         let flipped: Vec<bool> = sewn.faces.iter().map(|f| f.flipped).collect();
         let mut has_border = vec![false; sewn.faces.len()];
         self.borders.all.iter().for_each(|b| has_border[b.of.face as usize] = true);
+        // A whole surface that is closed in itself is a shell, whatever the file says.
+        let in_open = sewn.shells.iter().filter(|s| !s.closed).flat_map(|s| &s.faces);
+        in_open.filter(|f| is_whole(&sewn, **f)).for_each(|f| has_border[f.index()] = true);
         let affected = affected(&sewn, &has_border);
         links.retain(|l| l.faces.iter().all(|&f| affected[f as usize]));
         let oriented = orient(sewn.faces.len(), &flipped, &links);
@@ -203,7 +220,7 @@ impl Sewing<'_> {
             shared_by_more: joints.iter().filter(|j| j.others.len() > 1).count(),
             cuts: pieces.all.len() - self.borders.all.len(),
             vanished: vanished.iter().filter(|&&v| v).count(),
-            open: open_edges(&sewn),
+            open: still_open(&sewn),
             largest_move: moves.iter().copied().fold(0.0, f64::max),
             face_moves: moves,
             turned: oriented.turn.iter().filter(|&&t| t).count(),
@@ -255,7 +272,7 @@ impl Sewing<'_> {
 }
 
 /// The edges with one use, and how far each is from the nearest other one.
-fn open_edges(part: &Part) -> Vec<OpenEdge> {
+fn still_open(part: &Part) -> Vec<OpenEdge> {
     let uses = edge_uses(part);
     let borders = Borders::new(part, &uses);
     let open = |(b, border): (usize, &crate::border::Border)| OpenEdge {

@@ -3,6 +3,7 @@
 use crate::orient::Oriented;
 use crate::rebuild::Link;
 use chordal_brep::{Body, BodyKind, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source};
+use chordal_nurbs::Surface;
 
 /// What became of the shells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -149,13 +150,19 @@ fn is_enclosed(part: &Part, face: FaceId, linked: usize) -> bool {
             }
         }
     }
-    if sides == 0 {
-        // The whole surface: closed where it has no side at all.
-        let poles = surface.poles();
-        let closed = |axis: usize| {
-            surface.periods()[axis].is_some() || poles.iter().filter(|p| p.axis == axis).count() == 2
-        };
-        return closed(0) && closed(1);
-    }
-    sides == linked
+    if sides == 0 { is_closed_surface(surface) } else { sides == linked }
+}
+
+/// The surface has no side at all: each direction is closed, or ends in poles.
+fn is_closed_surface(surface: &Surface) -> bool {
+    let poles = surface.poles();
+    let closed = |axis: usize| {
+        surface.periods()[axis].is_some() || poles.iter().filter(|p| p.axis == axis).count() == 2
+    };
+    closed(0) && closed(1)
+}
+
+/// True where a face is the whole of a closed surface.
+pub(crate) fn is_whole(part: &Part, face: FaceId) -> bool {
+    is_enclosed(part, face, 0)
 }

@@ -40,8 +40,7 @@ impl Tree {
         if items.len() <= LEAF {
             return;
         }
-        let centres =
-            items.iter().fold(Box3::EMPTY, |b, &i| b.including(self.boxes[i as usize].center()));
+        let centres = items.iter().fold(Box3::EMPTY, |b, &i| b.including(self.boxes[i as usize].center()));
         let axis = (centres.max - centres.min).max_position();
         let middle = items.len() / 2;
         let key = |i: u32| self.boxes[i as usize].center()[axis];
@@ -117,10 +116,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn boxes() -> impl Strategy<Value = Vec<Box3>> {
-        let one = (prop::array::uniform3(-9.0..9.0), prop::array::uniform3(0.0..2.0)).prop_map(|(at, size)| {
-            let at = DVec3::from(at);
-            Box3 { min: at, max: at + DVec3::from(size) }
-        });
+        let one =
+            (prop::array::uniform3(-9.0..9.0), prop::array::uniform3(0.0..2.0)).prop_map(|(at, size)| {
+                let at = DVec3::from(at);
+                Box3 { min: at, max: at + DVec3::from(size) }
+            });
         prop::collection::vec(one, 0..60)
     }
 
