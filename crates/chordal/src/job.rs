@@ -12,7 +12,7 @@ use crate::resolve::{Resolved, resolve};
 use crate::scene::scene;
 use crate::sewing::sew_model;
 use crate::{JobError, JobOptions, OnProgress, Progress, Report};
-use chordal_brep::Model;
+use chordal_brep::{FaceGeometry, Model};
 use chordal_mesh::{PartMesh, Scene};
 use chordal_tessellate::{Cancel, PartReport, tessellate_part};
 use chordal_write::{Format, WriteOptions, WriteSummary, write_scene};
@@ -113,6 +113,7 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     job.tell(Progress::Reading);
     let format = output_format(job)?;
     let mut model = ledger.time(|s| &mut s.read, || read_model(&job.input))?;
+    something_to_mesh(&model, &job.input)?;
     job.check_cancelled()?;
 
     // 2. Sew: faces without neighbours get them by the geometry of their borders.
@@ -169,6 +170,26 @@ pub fn read_model(input: &Path) -> Result<Model, JobError> {
         return Err(JobError::Empty { path: input.to_owned(), loose });
     }
     Ok(model)
+}
+
+/// A model of which nothing can be meshed has no size either: what is wrong with its first face is the reason to give.
+fn something_to_mesh(model: &Model, input: &Path) -> Result<(), JobError> {
+    let mut first = None;
+    for part in &model.parts {
+        if !part.tessellated.is_empty() {
+            return Ok(());
+        }
+        for face in &part.faces {
+            match &face.geometry {
+                FaceGeometry::Surface(_) => return Ok(()),
+                FaceGeometry::Failed(reason) => {
+                    first.get_or_insert_with(|| format!("the face at {}: {reason}", face.source));
+                }
+            }
+        }
+    }
+    let faces = model.parts.iter().map(|part| part.faces.len()).sum();
+    Err(JobError::NothingMeshed { path: input.to_owned(), faces, first: first.unwrap_or_default() })
 }
 
 /// Meshes every placed part once, in parallel; the result does not depend on the number of threads.

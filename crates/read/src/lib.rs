@@ -9,6 +9,7 @@ mod error;
 mod flat;
 mod inventor;
 mod json;
+mod obj;
 mod scene;
 mod step;
 mod trimmed;
@@ -57,4 +58,5 @@ const FORMATS: &[Format] = &[
     Format { looks_like: brep_text::looks_like_brep, read: brep_text::read },
     Format { looks_like: inventor::looks_like_inventor, read: inventor::read },
     Format { looks_like: x3d::looks_like_x3d, read: x3d::read },
+    Format { looks_like: obj::looks_like_obj, read: obj::read },
 ];

@@ -45,7 +45,7 @@ fn push(t: [u32; 3], triangles: &mut Vec<[u32; 3]>) {
 }
 
 /// Cuts ears off a polygon seen along its mean normal; convex ones become fans.
-fn triangulate(points: &[DVec3], corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
+pub(crate) fn triangulate(points: &[DVec3], corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
     let n = corners.len();
     let flat = flattened(points, corners);
     let turn = |a: usize, b: usize, c: usize| (flat[b] - flat[a]).perp_dot(flat[c] - flat[b]);

@@ -9,6 +9,9 @@ use chordal_nurbs::{DVec2, Surface};
 /// Loops that follow the surface's border within this share of the domain are the border.
 const ON_BORDER: f64 = 1e-6;
 
+/// Loops that enclose less than this share of the domain run to and fro on one line: they cut nothing off.
+const NO_AREA: f64 = 1e-14;
+
 /// Loops may leave the domain by this share of it: beyond, the surface is taken at its border.
 const BEYOND: f64 = 1e-3;
 
@@ -39,7 +42,7 @@ pub(super) fn groups(
         }
         nested.push(Nested { area: area(&polygon), polygon, chain, covers });
     }
-    nested.retain(|n| n.area != 0.0);
+    nested.retain(|n| n.area.abs() > NO_AREA);
     let roles = roles(&nested);
     let mut outers: Vec<Group> = Vec::new();
     if !winding.is_empty() {
