@@ -165,6 +165,9 @@ impl Unroll<'_, '_> {
     fn cut(&mut self, mut winding: Vec<OpenLoop>, holes: &[OpenLoop]) -> Result<Vec<ChartPoint>, String> {
         let axis = usize::from(winding[0].winding[0] == 0);
         let across = 1 - axis;
+        if winding.len() == 2 && winding[0].winding[across] != 0 {
+            return self.slanted_band(winding, holes);
+        }
         if winding.iter().any(|l| l.winding[axis].abs() != 1 || l.winding[across] != 0) {
             return Err("a loop winds round its surface more than once, or both ways".into());
         }
@@ -196,10 +199,47 @@ impl Unroll<'_, '_> {
             }
             2 => {
                 let (a, b) = self.pair(winding, axis);
-                Ok(self.band(&a, &b, axis, period, holes))
+                Ok(self.band(&a, &b, along_axis(axis, period * f64::from(a.winding[axis])), holes))
             }
             n => Err(format!("{n} loops wind round the surface")),
         }
+    }
+
+    /// The polygon of two loops that wind round a torus both ways at once.
+    ///
+    /// With w the whole turns of the first, p ↦ w × p (in turns) tells how far across a place lies: the other loop is moved by
+    /// whole turns to the first place on the left.
+    fn slanted_band(
+        &mut self,
+        mut winding: Vec<OpenLoop>,
+        holes: &[OpenLoop],
+    ) -> Result<Vec<ChartPoint>, String> {
+        let mut b = winding.remove(1);
+        let a = winding.remove(0);
+        let [Some(pu), Some(pv)] = self.context.surface.periods else {
+            return Err("a loop winds round an open surface".into());
+        };
+        let periods = DVec2::new(pu, pv);
+        if b.winding == a.winding {
+            self.reversed = true;
+            b.reverse();
+        }
+        let [i, j] = a.winding;
+        // Whole turns that lead exactly one step across; there are none for a loop that winds several times.
+        let reach = i.abs().max(j.abs());
+        let steps = (-reach..=reach).flat_map(|m| (-reach..=reach).map(move |n| (m, n)));
+        let step = steps.filter(|&(m, n)| i * n - j * m == 1).min_by_key(|&(m, n)| m.abs() + n.abs());
+        let (Some((m, n)), true) = (step, b.winding == [-i, -j]) else {
+            return Err("its loops wind round the surface in different ways".into());
+        };
+        let turns = |(m, n): (i32, i32)| DVec2::new(f64::from(m), f64::from(n));
+        let across = |l: &OpenLoop| {
+            let p = DVec2::new(mean(&l.points, 0), mean(&l.points, 1)) / periods;
+            turns((i, j)).perp_dot(p)
+        };
+        let by = -(across(&b) - across(&a)).floor();
+        b.points = shifted(&b.points, turns((m, n)) * by * periods);
+        Ok(self.band(&a, &b, turns((i, j)) * periods, holes))
     }
 
     /// The lower loop, and the upper one moved above it.
@@ -231,10 +271,9 @@ impl Unroll<'_, '_> {
         (a, b)
     }
 
-    /// `a` from point `i` once round, its first point repeated one period on at the end.
-    fn once_round(a: &OpenLoop, i: usize, axis: usize, period: f64) -> Vec<ChartPoint> {
+    /// `a` from point `i` once round, its first point repeated at the end, moved by the whole turn `by` on.
+    fn once_round(a: &OpenLoop, i: usize, by: DVec2) -> Vec<ChartPoint> {
         let n = a.points.len();
-        let by = along_axis(axis, period * f64::from(a.winding[axis]));
         let mut points: Vec<ChartPoint> = a.points[i..].to_vec();
         points.extend(shifted(&a.points[..i], by));
         points.push(ChartPoint { uv: a.points[i].uv + by, ..a.points[i] });
@@ -268,8 +307,8 @@ impl Unroll<'_, '_> {
     /// The region between a loop and the pole line at `value`.
     fn cap(&mut self, a: &OpenLoop, axis: usize, period: f64, value: f64) -> Vec<ChartPoint> {
         let across = 1 - axis;
-        let mut polygon = Self::once_round(a, 0, axis, period);
         let by = along_axis(axis, -period * f64::from(a.winding[axis]));
+        let mut polygon = Self::once_round(a, 0, -by);
         let mut corner = polygon[polygon.len() - 1].uv;
         corner[across] = value;
         let inner = self.seam(&mut polygon, corner);
@@ -324,40 +363,22 @@ impl Unroll<'_, '_> {
         (rate / self.seam_chord).ceil().clamp(2.0, 256.0) as usize
     }
 
-    /// The region between two loops.
-    fn band(
-        &mut self,
-        a: &OpenLoop,
-        b: &OpenLoop,
-        axis: usize,
-        period: f64,
-        holes: &[OpenLoop],
-    ) -> Vec<ChartPoint> {
-        let (i, j, turns) = self.bridge(a, b, axis, period, holes);
-        let mut polygon = Self::once_round(a, i, axis, period);
-        let step = along_axis(axis, period * f64::from(a.winding[axis]));
+    /// The region between two loops, the first of which ends one `turn` beyond its start.
+    fn band(&mut self, a: &OpenLoop, b: &OpenLoop, turn: DVec2, holes: &[OpenLoop]) -> Vec<ChartPoint> {
+        let (i, j, turns) = self.bridge(a, b, turn, holes);
+        let mut polygon = Self::once_round(a, i, turn);
         // The upper loop begins where the lower one ended, one period on, and runs back.
-        let moved = OpenLoop {
-            points: shifted(&b.points, along_axis(axis, period * turns) + step),
-            winding: b.winding,
-            outer: false,
-        };
-        let back = Self::once_round(&moved, j, axis, period);
+        let moved =
+            OpenLoop { points: shifted(&b.points, turn * (turns + 1.0)), winding: b.winding, outer: false };
+        let back = Self::once_round(&moved, j, -turn);
         let inner = self.seam(&mut polygon, back[0].uv);
         polygon.extend(back);
-        Self::seam_back(&mut polygon, &inner, -step);
+        Self::seam_back(&mut polygon, &inner, -turn);
         polygon
     }
 
-    /// Points of the two loops to cut between, and by how many periods the upper one moves: the shortest cut that crosses no loop.
-    fn bridge(
-        &self,
-        a: &OpenLoop,
-        b: &OpenLoop,
-        axis: usize,
-        period: f64,
-        holes: &[OpenLoop],
-    ) -> (usize, usize, f64) {
+    /// Points of the two loops to cut between, and by how many turns the upper one moves: the shortest cut that crosses no loop.
+    fn bridge(&self, a: &OpenLoop, b: &OpenLoop, turn: DVec2, holes: &[OpenLoop]) -> (usize, usize, f64) {
         let stride = |n: usize| n.div_ceil(400);
         let (du, dv) = {
             let (_, du, dv) = self.context.surface.surface.jet1(a.points[0].uv);
@@ -367,18 +388,41 @@ impl Unroll<'_, '_> {
         for i in (0..a.points.len()).step_by(stride(a.points.len())) {
             for j in (0..b.points.len()).step_by(stride(b.points.len())) {
                 let d = b.points[j].uv - a.points[i].uv;
-                let turns = -(d[axis] / period).round();
-                let d = d + along_axis(axis, turns * period);
+                let turns = -whole_turns(d, turn);
+                let d = d + turn * turns;
                 candidates.push(((d.x * du).powi(2) + (d.y * dv).powi(2), i, j, turns));
             }
         }
         candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let crosses = |&&(_, i, j, turns): &&(f64, usize, usize, f64)| {
-            let (p, q) = (a.points[i].uv, b.points[j].uv + along_axis(axis, turns * period));
-            !holes.iter().chain([a, b]).any(|hole| crosses_loop(p, q, hole, axis, period))
+            let (p, q) = (a.points[i].uv, b.points[j].uv + turn * turns);
+            !holes.iter().chain([a, b]).any(|hole| self.crosses_loop(p, q, hole, turn))
         };
         let best = candidates.iter().take(2000).find(crosses).unwrap_or(&candidates[0]);
         (best.1, best.2, best.3)
+    }
+
+    /// True where the segment p–q crosses the loop in any turn.
+    fn crosses_loop(&self, p: DVec2, q: DVec2, hole: &OpenLoop, turn: DVec2) -> bool {
+        let n = hole.points.len();
+        let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a) > 0.0;
+        let tiny = 1e-12 * turn.length();
+        let near = |x: DVec2, y: DVec2| x.abs_diff_eq(y, tiny);
+        let winding = |axis: usize| {
+            self.context.surface.periods[axis].map_or(0.0, |p| p * f64::from(hole.winding[axis]))
+        };
+        let closing = DVec2::new(winding(0), winding(1));
+        [-1.0, 0.0, 1.0].iter().any(|extra| {
+            let base = turn * (whole_turns(p - hole.points[0].uv, turn) + extra);
+            (0..n).any(|i| {
+                let (a, mut b) = (hole.points[i].uv + base, hole.points[(i + 1) % n].uv + base);
+                if i + 1 == n {
+                    b += closing;
+                }
+                let touches = [a, b].iter().any(|&x| near(x, p) || near(x, q));
+                !touches && side(p, q, a) != side(p, q, b) && side(a, b, p) != side(a, b, q)
+            })
+        })
     }
 
     /// True for a surface without any boundary of its own whose loops are all holes, and for a face without loops.
@@ -500,20 +544,24 @@ impl Unroll<'_, '_> {
             }
         };
         let mut holes = Vec::with_capacity(plain.len());
+        let mut inside = Vec::with_capacity(plain.len());
         for mut open in plain {
             let by = self.shift_into(&outer, &open.points);
             if self.reversed {
                 open.reverse();
             }
-            // What the file runs as a hole is one, even where coarse chords put it across the outer loop: finer ones will not.
-            // What it runs as an outer loop is one only outside the outer loop: another piece of the face.
-            if area(&open.points) > 0.0 && by.is_some() {
-                open.reverse();
-            }
-            holes.push(shifted(&open.points, by.unwrap_or(DVec2::ZERO)));
+            open.points = shifted(&open.points, by.unwrap_or(DVec2::ZERO));
+            inside.push(by.is_some());
+            holes.push(open);
         }
+        // What the file runs as a hole is one, even where coarse chords put it across the outer loop: finer ones will not.
+        // What it runs as an outer loop is one outside the outer loop, another piece of the face, and inside a hole: an island.
+        let wrong: Vec<bool> = (0..holes.len())
+            .map(|i| area(&holes[i].points) > 0.0 && inside[i] && holes_around(&holes, i) % 2 == 0)
+            .collect();
+        holes.iter_mut().zip(wrong).filter(|(_, wrong)| *wrong).for_each(|(hole, _)| hole.reverse());
         let mut polygons = vec![outer];
-        polygons.extend(holes);
+        polygons.extend(holes.into_iter().map(|hole| hole.points));
         Ok(polygons)
     }
 
@@ -533,6 +581,17 @@ impl Unroll<'_, '_> {
         }
         None
     }
+}
+
+/// In how many of the other loops a loop lies as a whole.
+fn holes_around(loops: &[OpenLoop], i: usize) -> usize {
+    let own = &loops[i].points;
+    let around = |other: &&OpenLoop| {
+        let extent = UvBox::from_points(other.points.iter().map(|p| p.uv));
+        own.iter().all(|p| extent.contains(p.uv)) && own.iter().all(|p| contains(&other.points, p.uv))
+    };
+    let others = loops.iter().enumerate().filter(|&(k, _)| k != i).map(|(_, other)| other);
+    others.filter(around).count()
 }
 
 /// True where a loop uses an edge twice: the face lies on both sides of it, so the loop encloses the face and no hole.
@@ -569,22 +628,7 @@ fn seam_beside(holes: &[OpenLoop], axis: usize, period: f64, start: f64) -> f64 
         .0
 }
 
-/// True where the segment p–q crosses the loop in any turn.
-fn crosses_loop(p: DVec2, q: DVec2, hole: &OpenLoop, axis: usize, period: f64) -> bool {
-    let n = hole.points.len();
-    let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a) > 0.0;
-    let tiny = 1e-12 * period;
-    let near = |x: DVec2, y: DVec2| x.abs_diff_eq(y, tiny);
-    [-1.0, 0.0, 1.0].iter().any(|turn| {
-        let by = along_axis(axis, turn * period);
-        let base = along_axis(axis, period * ((p[axis] - hole.points[0].uv[axis]) / period).round()) + by;
-        (0..n).any(|i| {
-            let (a, mut b) = (hole.points[i].uv + base, hole.points[(i + 1) % n].uv + base);
-            if i + 1 == n {
-                b += along_axis(axis, period * f64::from(hole.winding[axis]));
-            }
-            let touches = [a, b].iter().any(|&x| near(x, p) || near(x, q));
-            !touches && side(p, q, a) != side(p, q, b) && side(a, b, p) != side(a, b, q)
-        })
-    })
+/// The whole number of turns nearest to a vector.
+fn whole_turns(d: DVec2, turn: DVec2) -> f64 {
+    (d.dot(turn) / turn.length_squared()).round()
 }
