@@ -8,6 +8,7 @@
 //! the surface are rejected.
 
 mod elementary;
+mod extruded;
 mod general;
 
 use crate::{Piece, Surface, SurfaceBounds};
@@ -37,6 +38,11 @@ pub struct FacetBound {
 impl FacetBound {
     const NONE: FacetBound = FacetBound { error: f64::INFINITY, edges: [f64::INFINITY; 3] };
     const EXACT: FacetBound = FacetBound { error: 0.0, edges: [0.0; 3] };
+
+    /// The better of two bounds as a whole.
+    fn or_less(self, other: Self) -> Self {
+        if other.error < self.error { other } else { self }
+    }
 }
 
 /// Bounds one facet. A bound below `enough` is as good as any: the effort spent on tightness depends on it. `scratch` is
@@ -62,6 +68,10 @@ pub fn facet_bound(
             let own = elementary::torus(facet, frame, *major, *minor, enough);
             // Facets long against the tube's radius are beyond it: derivatives must do.
             if own.error.is_finite() { own } else { general::bound(bounds, facet, enough, scratch) }
+        }
+        Surface::Extrusion { profile, direction } => {
+            let own = general::bound(bounds, facet, enough, scratch);
+            if own.error <= enough { own } else { own.or_less(extruded::bound(facet, profile, *direction)) }
         }
         _ => general::bound(bounds, facet, enough, scratch),
     };
