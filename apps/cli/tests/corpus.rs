@@ -8,12 +8,6 @@ use common::{corpus, index, json, model, run};
 /// Models that are not meshed cleanly yet, and why. The report owns up to each (exit 1 or 2); one that becomes clean must be
 /// taken off this list.
 const KNOWN: &[(&str, &str)] = &[
-    (
-        "extrusion_bspline",
-        "facets between nearly coincident parameters along the profile are thin as rounding",
-    ),
-    ("torus_villarceau", "a loop winds round the torus both ways at once"),
-    ("nested_loops", "two outer loops in one face: the second lies inside a hole of the first"),
     ("degree_100", "thin triangles; slow to evaluate"),
     ("weight_negative", "nothing is proven about weights that are not positive"),
     ("weight_range", "weights from 1e-3 to 1e3: triangles as thin as rounding"),

@@ -106,7 +106,6 @@ const KNOWN: &[(&str, &str)] = &[
     ("thread", "ties between flips are decided by rounding"),
     ("weight_negative", "nothing is proven: samples decide"),
     ("weight_zero", "nothing is proven: samples decide"),
-    ("nested_loops", "two outer loops in one face: the second lies inside a hole of the first"),
     ("touching_loops", "three points on a straight line where loops touch"),
 ];
 

@@ -5,6 +5,7 @@
 //! out later comes back as a request ([`EdgeSamples::split`]).
 
 use crate::metric::{Limits, Sizing};
+use crate::prove::{TURN_LENGTH, turns_too_far};
 use crate::surface::FaceSurface;
 use chordal_brep::{Edge, Part, Pcurve};
 use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range};
@@ -39,6 +40,9 @@ const DOUBLY_CURVED_CHORD: f64 = 0.9;
 
 /// Chords use this share of the tolerance: the bound of a facet over a chord is never quite as tight as the chord's own.
 const CHORD_AIM: f64 = 0.985;
+
+/// A chord is halved at most this often for the turn of a face along it.
+const MAX_HALVINGS: usize = 24;
 
 /// A kink of the tangent of more than this (radians) is a corner, and a corner is a vertex.
 const CORNER: f64 = 1e-3;
@@ -84,7 +88,7 @@ impl EdgeSamples {
             let t = probes.spread(count);
             let worst = t.windows(2).map(|t| curve.chord_error(t[0], t[1])).fold(0.0, f64::max);
             if worst <= limits.tolerance {
-                self.t.extend_from_slice(&t[1..]);
+                self.t.extend_from_slice(&turning_less(t, curve, range, uses, limits)[1..]);
                 return;
             }
             let factor = (worst / limits.tolerance).sqrt().clamp(1.0, 4.0);
@@ -99,7 +103,7 @@ impl EdgeSamples {
                 break;
             }
         }
-        self.t.extend_from_slice(&t[1..]);
+        self.t.extend_from_slice(&turning_less(t, curve, range, uses, limits)[1..]);
     }
 
     /// Cuts the named chords into this many parts.
@@ -119,6 +123,49 @@ impl EdgeSamples {
         self.points = self.t.iter().map(|&t| curve.point(t)).collect();
         self.pin_ends(ends);
     }
+}
+
+/// Halves chords between whose ends a face turns further than allowed: it may bend where no probe was.
+fn turning_less(
+    mut t: Vec<f64>,
+    curve: &Curve,
+    range: Range,
+    uses: &[EdgeUse<'_, '_>],
+    limits: &Limits,
+) -> Vec<f64> {
+    // The ends may lie on creases: this much inside, normals belong to this piece.
+    let inside = Range::new(range.start + 1e-7 * range.length(), range.end - 1e-7 * range.length());
+    for one in uses.iter().filter(|u| !u.surface.is_elementary()) {
+        if limits.angle >= std::f64::consts::PI {
+            break;
+        }
+        let mut near = None;
+        let mut at = |t: f64| {
+            let t = inside.clamp(t);
+            let p = curve.point(t);
+            let uv = one.parameters(p, t, range, near);
+            near = Some(uv);
+            (t, p, one.surface.normal(uv))
+        };
+        let mut fine = vec![t[0]];
+        let mut last = at(t[0]);
+        for &end in &t[1..] {
+            let mut ends = vec![end];
+            while let Some(&next) = ends.last() {
+                let ahead = at(next);
+                let long = last.1.distance(ahead.1) > TURN_LENGTH * limits.tolerance;
+                if long && ends.len() < MAX_HALVINGS && turns_too_far(last.2, ahead.2, limits.angle) {
+                    ends.push(0.5 * (last.0 + ahead.0));
+                    continue;
+                }
+                fine.push(next);
+                last = ahead;
+                ends.pop();
+            }
+        }
+        t = fine;
+    }
+    t
 }
 
 fn split_where(t: &[f64], too_far: impl Fn(f64, f64) -> bool) -> Vec<f64> {

@@ -40,7 +40,7 @@ const FLIP_HELPS: f64 = 3.0;
 
 /// Edges shorter than this share of the tolerance may turn by any angle: at singular points, where the surface turns within no
 /// distance at all, there would be no end to refining.
-const TURN_LENGTH: f64 = 0.1;
+pub(crate) const TURN_LENGTH: f64 = 0.1;
 
 /// Facets lower than this share of the tolerance may face any way.
 const FOLD_HEIGHT: f64 = 0.05;
@@ -391,7 +391,7 @@ fn clearly_longest(of: impl Iterator<Item = usize>, length: impl Fn(usize) -> f6
     of.reduce(|best, i| if length(i) > length(best) * (1.0 + 1e-9) { i } else { best })
 }
 
-fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
+pub(crate) fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
     limit < std::f64::consts::PI
         && n != DVec3::ZERO
         && m != DVec3::ZERO
