@@ -9,7 +9,7 @@ pub enum ReadError {
     #[error("{name} is empty")]
     Empty { name: String },
     #[error(
-        "{name} is of no known format: it is neither STEP (ISO-10303-21) nor BREP (CASCADE Topology) nor JSON"
+        "{name} is of no known format: it is neither STEP (ISO-10303-21) nor BREP (CASCADE Topology) nor IGES nor JSON"
     )]
     UnknownFormat { name: String },
     #[error("{name} is {format} that cannot be read: {problem}")]

@@ -8,6 +8,7 @@ mod build;
 mod error;
 mod flat;
 mod inventor;
+mod iges;
 mod json;
 mod obj;
 mod scene;
@@ -59,4 +60,5 @@ const FORMATS: &[Format] = &[
     Format { looks_like: inventor::looks_like_inventor, read: inventor::read },
     Format { looks_like: x3d::looks_like_x3d, read: x3d::read },
     Format { looks_like: obj::looks_like_obj, read: obj::read },
+    Format { looks_like: iges::looks_like_iges, read: iges::read },
 ];

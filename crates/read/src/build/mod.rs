@@ -3,11 +3,13 @@
 mod chain;
 mod merge;
 mod notes;
+mod placement;
 mod splines;
 
 pub(crate) use chain::{Chained, chained};
 pub(crate) use merge::merge_vertices;
 pub(crate) use notes::Notes;
+pub(crate) use placement::placement;
 pub(crate) use splines::{expanded_knots, replace_zero_weights, unrolled};
 
 use chordal_brep::{Coedge, Edge, EdgeId, Part, Source, Vertex, VertexId};

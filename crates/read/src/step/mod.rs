@@ -25,7 +25,7 @@ mod placement;
 mod products;
 mod representation;
 mod scan;
-mod styles;
+pub(crate) mod styles;
 mod surfaces;
 mod tessellated;
 mod text;
