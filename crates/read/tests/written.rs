@@ -162,5 +162,5 @@ fn the_same_shapes_elsewhere_are_the_same_part() {
     let model = model("brep", "brep", "instances");
     assert_eq!((model.parts.len(), model.placements().len()), (1, 3));
     let places: Vec<_> = model.placements().iter().map(|p| p.world.translation.to_array()).collect();
-    assert_eq!(places, [[4.0, 0.0, 0.0], [4.0, 0.0, 0.0], [-4.0, 0.0, 0.0]]);
+    assert_eq!(places, [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [-4.0, 0.0, 0.0]]);
 }

@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn rounded_axes_become_orthogonal() {
-        let rows = [[0.7071, -0.7071, 0.0, 3.0], [0.7071, 0.7071, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+        let rows = [[0.9239, -0.3827, 0.0, 3.0], [0.3827, 0.9239, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         let m = placement(rows).expect("sound").matrix3;
         let off = (m * m.transpose() - DMat3::IDENTITY).to_cols_array();
         assert!(off.iter().all(|d| d.abs() < 1e-15), "{off:?}");

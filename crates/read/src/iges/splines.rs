@@ -132,10 +132,9 @@ pub(crate) fn cubic_surface(doc: &Doc<'_>, ix: Ix) -> Res<(Surface, UvBox)> {
         return Err(doc.bad(ix, "has no patches"));
     }
     let (tu, tv) = (args.reals(m + 1)?, args.reals(n + 1)?);
-    let columns = 3 * n + 1;
     let mut rows: Vec<Vec<DVec3>> = Vec::new();
     for i in 0..m {
-        let mut strip: Vec<Vec<DVec3>> = vec![Vec::with_capacity(columns.min(1 << 16)); 4];
+        let mut strip: Vec<Vec<DVec3>> = vec![Vec::new(); 4];
         for j in 0..n {
             let patch = args.reals(48)?;
             let (hu, hv) = (tu[i + 1] - tu[i], tv[j + 1] - tv[j]);

@@ -122,7 +122,7 @@ fn references(doc: &Doc<'_>, ix: Ix) -> Res<Vec<Ix>> {
     }
     for _ in 0..count {
         for letter in rounds.chars() {
-            take(letter, &mut count)?;
+            take(letter, &mut 0)?;
         }
     }
     Ok(found)
