@@ -57,8 +57,8 @@ const FORMATS: &[Format] = &[
     Format { looks_like: step::looks_like_step, read: step::read },
     Format { looks_like: json::looks_like_json, read: json::read },
     Format { looks_like: brep_text::looks_like_brep, read: brep_text::read },
+    Format { looks_like: iges::looks_like_iges, read: iges::read },
     Format { looks_like: inventor::looks_like_inventor, read: inventor::read },
     Format { looks_like: x3d::looks_like_x3d, read: x3d::read },
     Format { looks_like: obj::looks_like_obj, read: obj::read },
-    Format { looks_like: iges::looks_like_iges, read: iges::read },
 ];
