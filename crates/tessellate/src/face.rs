@@ -235,7 +235,11 @@ impl<'a, 's> FaceWork<'a, 's> {
         match key {
             Key::Vertex(v) => self.context.part.vertices[v as usize].point,
             Key::Edge(e, i) => self.context.edges[e as usize].points[i as usize],
-            Key::Private(k) => self.chart.private[k as usize],
+            // Behind the seam's own points come those inside the face, in the order of the triangulation.
+            Key::Private(k) => match self.chart.private.get(k as usize) {
+                Some(&point) => point,
+                None => self.xyz[k as usize - self.chart.private.len() + self.chart.points.len()],
+            },
         }
     }
 

@@ -5,8 +5,8 @@ use super::graph::{Graph, NodeIx};
 use crate::ReadError;
 use crate::trimmed::{self, Look, TrimLoop};
 use chordal_brep::{
-    BodyKind, Color, LooseItem, LooseKind, Model, Node, NodeId, Part, PartId, Source, TessellatedItem,
-    Warning,
+    BodyKind, Color, FaceGeometry, LooseItem, LooseKind, Model, Node, NodeId, Part, PartId, Source,
+    TessellatedItem, Warning,
 };
 use chordal_nurbs::{DAffine3, DVec3, NurbsSurface, Surface};
 use std::sync::Arc;
@@ -198,9 +198,11 @@ impl Stage {
         warnings.append(&mut self.warnings);
         let Frame { part: mut common, mut placed } = self.frames.swap_remove(0);
         let has_common = !is_empty(&common);
-        if !has_common && placed.is_empty() {
-            let worst = warnings.iter().find(|w| w.lost).or(warnings.first());
-            let problem = worst.map_or_else(|| "no node is a shape".to_owned(), ToString::to_string);
+        let all = || std::iter::once(&common).chain(&self.parts);
+        let nothing = !all().any(has_shape);
+        if nothing {
+            let worst = warnings.iter().find(|w| w.lost).or(warnings.first()).map(ToString::to_string);
+            let problem = all().find_map(first_failure).or(worst).unwrap_or("no node is a shape".to_owned());
             return Err(ReadError::NothingInIt {
                 name: name.to_owned(),
                 entities: graph.nodes.len(),
@@ -253,6 +255,19 @@ fn plain_node(name: &str, transform: DAffine3) -> Node {
 
 fn is_empty(part: &Part) -> bool {
     part.faces.is_empty() && part.tessellated.is_empty() && part.loose.is_empty()
+}
+
+/// True for parts with something to look at, if only a curve.
+fn has_shape(part: &Part) -> bool {
+    let faces = part.faces.iter().any(|face| matches!(face.geometry, FaceGeometry::Surface(_)));
+    faces || !part.tessellated.is_empty() || !part.loose.is_empty() && part.faces.is_empty()
+}
+
+fn first_failure(part: &Part) -> Option<String> {
+    part.faces.iter().find_map(|face| match &face.geometry {
+        FaceGeometry::Failed(reason) => Some(reason.clone()),
+        FaceGeometry::Surface(_) => None,
+    })
 }
 
 /// True where a transform turns shapes inside out.

@@ -153,13 +153,13 @@ impl<'a> Walk<'a> {
                 );
             }
             "NurbsSet" => {}
+            _ if self.geometry(ix, place) => {}
             kind if graph.prototypes.get(kind).is_some_and(|p| p.external) => {
                 self.stage.lose(
                     node.source(),
                     format!("{kind} is a prototype of another file, which is not followed"),
                 );
             }
-            _ if self.geometry(ix, place) => {}
             kind if !kind.is_empty() && !is_silent(kind) => {
                 self.note(node, "a node that is not read; left out")
             }
