@@ -6,6 +6,9 @@ use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4, NurbsCurve2, NurbsSurface};
 /// Control points nearer together than this share of the net's size are one: files hold 32-bit numbers.
 const ONE_POINT: f64 = 1e-6;
 
+/// What six digits leave open, as a share of the net's size, and a little more for weights of six digits.
+const ROUNDED: f64 = 4e-6;
+
 /// A control net as a node gives it; points are (wx, wy, wz, w).
 #[derive(Debug)]
 pub(crate) struct Net<'a> {
@@ -55,10 +58,38 @@ pub(crate) fn surface(net: &Net<'_>) -> Result<(NurbsSurface, Vec<String>), Stri
         }
     }
     let weights: Vec<f64> = points.iter().map(|p| p.w).collect();
-    let points = points.into_iter().map(|p| p.truncate() / p.w).collect();
+    let mut points: Vec<DVec3> = points.into_iter().map(|p| p.truncate() / p.w).collect();
+    join_rounded(&mut points, &[&u, &v]);
     let surface = NurbsSurface::new([u.degree, v.degree], u.knots, v.knots, points, Some(weights))
         .map_err(|error| error.to_string())?;
     Ok((surface, notes))
+}
+
+/// Files of these formats hold about six digits. Sides that differ by less than they can say are meant to be one point
+/// (a pole), or to meet: they are made to.
+fn join_rounded(points: &mut [DVec3], directions: &[&Direction; 2]) {
+    let size = points.iter().fold(0.0, |d: f64, p| d.max((*p - points[0]).abs().max_element()));
+    let near = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= ROUNDED * size;
+    let counts = directions.map(|d| d.knots.len() - d.degree - 1);
+    for axis in 0..2 {
+        let Direction { degree, knots, .. } = directions[axis];
+        let same = |knots: &[f64]| knots.windows(2).all(|k| k[0] == k[1]);
+        let clamped = [same(&knots[1..=*degree]), same(&knots[counts[axis]..counts[axis] + degree])];
+        let along = counts[1 - axis];
+        let at = |side: usize, k: usize| {
+            let row = if side == 0 { 0 } else { counts[axis] - 1 };
+            if axis == 0 { row * counts[1] + k } else { k * counts[1] + row }
+        };
+        for side in (0..2).filter(|&side| clamped[side]) {
+            let first = points[at(side, 0)];
+            if (0..along).all(|k| near(points[at(side, k)], first)) {
+                (0..along).for_each(|k| points[at(side, k)] = first);
+            }
+        }
+        if clamped == [true; 2] && (0..along).all(|k| near(points[at(0, k)], points[at(1, k)])) {
+            (0..along).for_each(|k| points[at(1, k)] = points[at(0, k)]);
+        }
+    }
 }
 
 /// A curve of parameter space; points are (wx, wy, w).
@@ -99,4 +130,36 @@ fn note_knots(found: &Direction, given: usize, which: &str, notes: &mut Vec<Stri
 fn same_points(points: &[DVec4]) -> impl Fn(DVec4, DVec4) -> bool + use<> {
     let size = points.iter().fold(0.0, |d: f64, p| d.max((*p - points[0]).abs().max_element()));
     move |a, b| (a - b).abs().max_element() <= ONE_POINT * size
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use chordal_nurbs::Surface;
+
+    #[test]
+    fn poles_and_seams_of_six_digits_are_exact() {
+        // A ring at each of three heights, the outer ones points but for rounding; the last column off by rounding.
+        let off = |i: usize, j: usize| 1e-6 * ((3 * i + 5 * j) % 4) as f64;
+        let ring = [[1., 0.], [1., 1.], [-1., 1.], [-1., -1.], [1., -1.], [1., 0.]];
+        let mut points = Vec::new();
+        for j in 0..3 {
+            for (i, [x, y]) in ring.iter().enumerate() {
+                let r = if j == 1 { 1.0 } else { 0.0 };
+                points.push(DVec4::new(x * r + off(i, j), y * r - off(j, i), j as f64, 1.0));
+            }
+        }
+        let net = Net { points, counts: [6, 3], orders: [3, 3], knots: [&[], &[]], closed: [false; 2] };
+        let surface = Surface::Nurbs(surface(&net).unwrap().0);
+        assert!(surface.periods()[0].is_some() && surface.periods()[1].is_none());
+        assert_eq!(surface.poles().len(), 2);
+    }
+
+    #[test]
+    fn what_differs_by_more_than_rounding_stays() {
+        let ring = [[1., 0.], [1., 1.], [-1., 1.], [-1., -1.], [1., -1.], [1., 1e-4]];
+        let points = [0.0, 1.0].iter().flat_map(|z| ring.map(|[x, y]| DVec4::new(x, y, *z, 1.0))).collect();
+        let net = Net { points, counts: [6, 2], orders: [3, 2], knots: [&[], &[]], closed: [true; 2] };
+        assert_eq!(Surface::Nurbs(surface(&net).unwrap().0).periods(), [None, None]);
+    }
 }

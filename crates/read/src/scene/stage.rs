@@ -114,7 +114,9 @@ impl Stage {
 
     /// Places what a closed part consists of.
     pub(crate) fn place(&mut self, what: &[Placed], transform: &DAffine3, source: Source) {
-        if self.afford(PLACEMENT * what.len(), source) {
+        if !transform.is_finite() {
+            self.lose(source, "the place of a shape is not finite; left out");
+        } else if self.afford(PLACEMENT * what.len(), source) {
             let moved = |p: &Placed| Placed { transform: *transform * p.transform, ..p.clone() };
             self.frame().placed.extend(what.iter().map(moved));
         }
@@ -128,7 +130,11 @@ impl Stage {
         world: &DAffine3,
         look: &Look,
     ) {
-        let surface = Arc::new(Surface::Nurbs(nurbs.transformed(world)));
+        let moved = nurbs.transformed(world);
+        if !moved.points().iter().all(|p| p.is_finite()) {
+            return self.failed(format!("{}: its place is not finite", look.source), look);
+        }
+        let surface = Arc::new(Surface::Nurbs(moved));
         let look = Look { flipped: look.flipped ^ mirrors(world), ..look.clone() };
         let frame = self.frames.last_mut().expect("the common part is never taken");
         let faces = trimmed::add_faces(&mut frame.part, &surface, trims, &look, &mut self.warnings);

@@ -126,6 +126,7 @@ impl Maker<'_> {
     fn coedge(&mut self, piece: &Piece, ends: [VertexId; 2], source: Source) -> Coedge {
         let side = self.on_side(piece);
         if let Some(side) = &side
+            && ends[0] == ends[1]
             && self.poles.iter().any(|pole| pole.axis == side.axis && pole.value == side.value)
         {
             return self.point_edge(ends[0], source);
@@ -135,7 +136,8 @@ impl Maker<'_> {
             None => (self.lifted(&piece.curve), piece.curve.clone(), piece.range, piece.forward),
         };
         let pcurves = vec![Pcurve { curve: pcurve, range }];
-        if let Some(seam) = side.as_ref().and_then(|side| self.known_seam(side)) {
+        let seam = side.as_ref().and_then(|side| self.known_seam(side));
+        if let Some(seam) = seam.filter(|seam| self.joins(*seam, ends, forward)) {
             return Coedge { edge: seam, forward, pcurves };
         }
         let edge = EdgeId::from(self.part.edges.len());
@@ -147,6 +149,12 @@ impl Maker<'_> {
             self.seams.push(Seam { edge, axis: side.axis, range: side.range });
         }
         Coedge { edge, forward, pcurves }
+    }
+
+    /// True where an edge run this way begins and ends in these vertices.
+    fn joins(&self, edge: EdgeId, ends: [VertexId; 2], forward: bool) -> bool {
+        let edge = &self.part.edges[edge.index()];
+        ends == if forward { [edge.start, edge.end] } else { [edge.end, edge.start] }
     }
 
     /// An edge that is a single point.

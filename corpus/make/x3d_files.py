@@ -1,0 +1,222 @@
+"""The VRML97 and X3D files of the corpus, and broken ones: one function each. All are called .x3d; what they hold
+tells the encoding.
+
+    python corpus/make/x3d_files.py        # writes corpus/x3d and corpus/x3d/bad with their INDEX.tsv
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from written import BAD, GOOD, bad, good, write_all
+
+VRML = "#VRML V2.0 utf8\n\n"
+CLASSIC = "#X3D V3.3 utf8\nPROFILE Interchange\nCOMPONENT NURBS : 4\n\n"
+W = math.sqrt(0.5)
+HILL = "0 0 0, 1 0 0, 2 0 0, 0 1 0, 1 1 1, 2 1 0, 0 2 0, 1 2 0, 2 2 0"
+RING = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+WEIGHTS = [1 if i % 2 == 0 else W for i in range(9)]
+RING_KNOTS = "0 0 0 1 1 2 2 3 3 4 4 4"
+
+
+def xml(body: str) -> str:
+    head = "<?xml version='1.0' encoding='UTF-8'?>\n<X3D profile='Full' version='3.3'>\n"
+    return f"{head}<head><meta name='title' content='corpus'/></head>\n<Scene>\n{body}\n</Scene>\n</X3D>\n"
+
+
+def numbers(points: list[tuple[float, ...]]) -> str:
+    return ", ".join(" ".join(f"{x:.9g}" for x in p) for p in points)
+
+
+def patch_node(more: str = "", kind: str = "NurbsPatchSurface") -> str:
+    return f"{kind} {{ uDimension 3 vDimension 3 controlPoint Coordinate {{ point [ {HILL} ] }} {more} }}"
+
+
+@good("patch_xml", "a patch without knots, XML encoding", faces=1, closed=False)
+def patch_xml() -> str:
+    return xml(
+        "<Shape><Appearance><Material diffuseColor='0.2 0.4 0.8'/></Appearance>\n"
+        "<NurbsPatchSurface uDimension='3' vDimension='3' solid='false'>\n"
+        f"<CoordinateDouble containerField='controlPoint' point='{HILL}'/></NurbsPatchSurface></Shape>"
+    )
+
+
+@good("patch_classic", "the same patch, classic encoding", faces=1, closed=False)
+def patch_classic() -> str:
+    look = "appearance Appearance { material Material { diffuseColor 0.2 0.4 0.8 } }"
+    return CLASSIC + f"Shape {{ {look}\n geometry {patch_node('solid FALSE')} }}\n"
+
+
+@good("patch_vrml", "the same patch, VRML97 with its amendment", faces=1, closed=False)
+def patch_vrml() -> str:
+    return VRML + f"Shape {{ geometry NurbsSurface {{ uDimension 3 vDimension 3 controlPoint [ {HILL} ] }} }}\n"
+
+
+def contour(*curves: str) -> str:
+    return f"Contour2D {{ children [ {' '.join(curves)} ] }}"
+
+
+def polyline(points: list[tuple[float, float]]) -> str:
+    return f"ContourPolyline2D {{ controlPoint [ {numbers(points)} ] }}"
+
+
+@good("trimmed", "an outer contour, a circle and a chain of a line and a spline as holes", faces=1, closed=False)
+def trimmed() -> str:
+    circle = [((0.3 + 0.15 * x) * w, (0.5 + 0.15 * y) * w) for (x, y), w in zip(RING, WEIGHTS)]
+    weights = " ".join(f"{w:.9g}" for w in WEIGHTS)
+    ring = f"NurbsCurve2D {{ knot [ {RING_KNOTS} ] weight [ {weights} ] controlPoint [ {numbers(circle)} ] }}"
+    bow = "NurbsCurve2D { order 4 controlPoint [ 0.85 0.3, 0.85 0.7, 0.6 0.7, 0.6 0.3 ] }"
+    outer = polyline([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)])
+    chain = contour(polyline([(0.6, 0.3), (0.85, 0.3)]), bow)
+    contours = f"trimmingContour [ {contour(outer)} {contour(ring)} {chain} ]"
+    return CLASSIC + f"Shape {{ geometry {patch_node(contours, 'NurbsTrimmedSurface')} }}\n"
+
+
+@good("ball", "a rational sphere of one patch: poles at both ends, closed round them", faces=1)
+def ball() -> str:
+    half = [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)]
+    net, weights = [], []
+    for (r, z), v in zip(half, WEIGHTS):
+        for (x, y), u in zip(RING, WEIGHTS):
+            net.append((x * r * u * v, y * r * u * v, z * u * v))
+            weights.append(u * v)
+    return xml(
+        f"<Shape><NurbsPatchSurface uClosed='true' uDimension='9' vDimension='5' uKnot='{RING_KNOTS}'\n"
+        f" vKnot='0 0 0 1 1 2 2 2' weight='{' '.join(f'{w:.17g}' for w in weights)}'>\n"
+        f"<CoordinateDouble containerField='controlPoint' point='{', '.join(' '.join(f'{x:.17g}' for x in p) for p in net)}'/>"
+        "</NurbsPatchSurface></Shape>"
+    )
+
+
+@good("ring", "closed both ways without knots: a periodic torus", faces=1)
+def ring() -> str:
+    net = []
+    for j in range(7):
+        for i in range(7):
+            a, b = math.tau * (i % 6) / 6, math.tau * (j % 6) / 6
+            r = 3 + math.cos(a)
+            net.append((r * math.cos(b), math.sin(a), r * math.sin(b)))
+    return CLASSIC + (
+        "Shape { geometry NurbsPatchSurface { uClosed TRUE vClosed TRUE uDimension 7 vDimension 7 uOrder 4 vOrder 4\n"
+        f" controlPoint CoordinateDouble {{ point [ {numbers(net)} ] }} }} }}\n"
+    )
+
+
+@good("swept", "a spline swept along a line, and a profile swung round a circle", faces=2, closed=False)
+def swept() -> str:
+    arc = f"weight [ 1 {W:.9g} 1 ]"
+    return CLASSIC + (
+        "Shape { geometry NurbsSweptSurface { crossSectionCurve NurbsCurve2D { controlPoint [ 1 0, 1 1, 0 1 ] }\n"
+        " trajectoryCurve NurbsCurve { order 2 controlPoint Coordinate { point [ 0 0 0, 0 3 1 ] } } } }\n"
+        "Transform { translation 5 0 0 children Shape { geometry NurbsSwungSurface {\n"
+        f" profileCurve NurbsCurve2D {{ controlPoint [ 0 3, 1 2, 2 3 ] }}\n"
+        f" trajectoryCurve NurbsCurve2D {{ controlPoint [ 1 0, {W:.9g} {W:.9g}, 0 1 ] {arc} }} }} }} }}\n"
+    )
+
+
+@good("prototype", "a prototype with a colour and points of its own, used twice", faces=2, closed=False)
+def prototype() -> str:
+    return VRML + (
+        "PROTO Tile [ field SFColor paint 1 1 1 field MFVec3f points [] ] { Shape {\n"
+        " appearance Appearance { material Material { diffuseColor IS paint } }\n"
+        " geometry NurbsSurface { uDimension 3 vDimension 3 controlPoint IS points } } }\n"
+        f"Tile {{ paint 1 0 0 points [ {HILL} ] }}\n"
+        f"Transform {{ translation 3 0 0 children Tile {{ points [ {HILL} ] }} }}\n"
+    )
+
+
+@good("instances", "one shape in four places, one of them skewed, in inches and degrees", faces=4, closed=False)
+def instances() -> str:
+    return xml(
+        "<Group><Shape DEF='Tile'><NurbsPatchSurface uDimension='3' vDimension='3'>"
+        f"<Coordinate containerField='controlPoint' point='{HILL}'/></NurbsPatchSurface></Shape>\n"
+        "<Transform translation='4 0 0' rotation='0 0 1 90'><Shape USE='Tile'/></Transform>\n"
+        "<Transform translation='0 4 0' scale='1 -2 1'><Shape USE='Tile'/></Transform>\n"
+        "<Switch whichChoice='0'><Transform translation='4 4 0' scale='1 2 3' scaleOrientation='1 1 0 30'>"
+        "<Shape USE='Tile'/></Transform></Switch></Group>"
+    ).replace("<head>", "<head><unit category='length' name='inch' conversionFactor='0.0254'/>"
+              "<unit category='angle' name='degree' conversionFactor='0.017453292519943295'/>")
+
+
+@good("solids", "a box, a sphere, a cylinder and a cone", faces=12, solids=4)
+def solids() -> str:
+    kinds = ["Box { size 1 2 3 }", "Sphere { }", "Cylinder { height 1 }", "Cone { }"]
+    place = "Transform {{ translation {0} 0 0 children Shape {{ geometry {1} }} }}\n"
+    return VRML + "".join(place.format(3 * i, kind) for i, kind in enumerate(kinds))
+
+
+@good("polygons", "polygons of seven kinds and no surface", faces=0, closed=False)
+def polygons() -> str:
+    points = "coord Coordinate { point [ 0 0 0, 2 0 0, 2 2 0, 1 0.5 0 ] }"
+    kinds = ["IndexedFaceSet { coordIndex [ 0 1 2 3 -1 ]", "IndexedTriangleSet { index [ 0 1 3 1 2 3 ]", "QuadSet {",
+             "TriangleStripSet { stripCount 4", "IndexedTriangleStripSet { index [ 0 1 3 2 -1 ]",
+             "TriangleFanSet { fanCount [ 4 ] ccw FALSE"]
+    shapes = "".join(f"Shape {{ geometry {kind} {points} }} }}\n" for kind in kinds)
+    return CLASSIC + shapes + "Shape { geometry ElevationGrid { xDimension 2 zDimension 2 height [ 0 0 0 1 ] } }\n"
+
+
+@bad("truncated_xml", "the file ends within an element", exit="01", phrase="the file ends within")
+def truncated_xml() -> str:
+    return patch_xml().split("</Scene>")[0]
+
+
+@bad("broken_xml", "no XML behind the first shape", exit="01", phrase="no XML from here on")
+def broken_xml() -> str:
+    return patch_xml().split("</Scene>")[0] + "<Group DEF='"
+
+
+@bad("few_points", "fewer points than the net needs", exit="2", phrase="control points where 3")
+def few_points() -> str:
+    return patch_classic().replace(", 2 2 0", "")
+
+
+@bad("bad_weights", "weights that are too few are left out", exit="01", phrase="2 weights for 9 control points")
+def bad_weights() -> str:
+    return patch_classic().replace("solid FALSE", "weight [ 1 2 ]")
+
+
+@bad("bent_sweep", "a sweep along a bent line has no exact form", exit="2", phrase="trajectory is bent")
+def bent_sweep() -> str:
+    return swept().split("Transform")[0].replace("0 3 1", "0 3 1, 1 4 1")
+
+
+@bad("script", "a prototype whose points a script would compute", exit="2", phrase="0 control points")
+def script() -> str:
+    return CLASSIC + (
+        "PROTO Made [ ] { NurbsPatchSurface { uDimension 3 vDimension 3 controlPoint DEF P Coordinate { } }\n"
+        ' Script { url "ecmascript: function initialize() {}" } }\nShape { geometry Made { } }\n'
+    )
+
+
+@bad("inline", "another file is not followed", exit="01", phrase="not followed")
+def inline() -> str:
+    return patch_classic() + 'Inline { url "other.x3dv" }\n'
+
+
+@bad("bomb", "uses of uses, four to the power of forty", exit="01", phrase="used too often")
+def bomb() -> str:
+    text = VRML + "DEF N0 Shape { geometry Box { } }\n"
+    return text + "".join(f"DEF N{i} Group {{ children [ {f'USE N{i - 1} ' * 4}] }}\n" for i in range(1, 41))
+
+
+@bad("prototype_bomb", "prototypes of prototypes, four to the power of forty", exit="012", phrase="")
+def prototype_bomb() -> str:
+    text = VRML + "PROTO P0 [ ] { Shape { geometry Box { } } }\n"
+    for i in range(1, 41):
+        text += f"PROTO P{i} [ ] {{ Group {{ children [ {f'P{i - 1} {{ }} ' * 4}] }} }}\n"
+    return text + "P40 { }\n"
+
+
+@bad("deep", "elements within elements, a thousand deep", exit="2", phrase="lie deeper than")
+def deep() -> str:
+    return xml("<Group>" * 1000 + "<Shape><Box/></Shape>" + "</Group>" * 1000)
+
+
+@bad("nothing", "a scene without a shape", exit="2", phrase="no node is a shape")
+def nothing() -> str:
+    return xml("<Viewpoint/>")
+
+
+if __name__ == "__main__":
+    write_all(Path(__file__).resolve().parent.parent, "x3d", ".x3d", GOOD, BAD)
