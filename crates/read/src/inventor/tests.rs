@@ -154,7 +154,11 @@ fn faces_without_sense_fail_with_a_reason() {
             "an index lies outside",
         ),
     ] {
-        let model = read(&text);
+        let text = format!("#Inventor V2.1 ascii\n{text}");
+        let error = read_bytes(text.as_bytes(), "test").unwrap_err().to_string();
+        assert!(error.contains(reason), "{error}");
+        // Beside a sound one, such a face is a failed one.
+        let model = read_bytes(format!("{text} Cube {{ }}").as_bytes(), "test").unwrap();
         let FaceGeometry::Failed(found) = &model.parts[0].faces[0].geometry else { panic!("{reason}") };
         assert!(found.contains(reason), "{found}");
     }
