@@ -236,7 +236,8 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
         }
         None => report.faces.meshed += instances,
     }
-    report.max_gap = report.max_gap.max(known(of_face.gap).unwrap_or(0.0));
+    let gap = of_face.gap.max(of_face.pcurve_gap);
+    report.max_gap = report.max_gap.max(known(gap).unwrap_or(0.0));
     report.lower_bound += instances as f64 * of_face.lower_bound;
     report.face_list.push(FaceEntry {
         id: entity_id(face.source),
@@ -246,7 +247,7 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
         instances,
         triangles: of_face.triangles,
         proven_error: known(of_face.proven_error),
-        gap: known(of_face.gap),
+        gap: known(gap),
         bound: of_face.bound.into(),
         lower_bound: of_face.lower_bound,
     });

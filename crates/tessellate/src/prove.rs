@@ -222,6 +222,7 @@ impl<'a> Prover<'a> {
         if bound.error > tolerance {
             let coarse = (0..3).filter(|&i| boundary[i] && bound.edges[i] > tolerance);
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
+            let worst = worst.or_else(|| low_over_boundary(&facet, boundary, FOLD_HEIGHT * tolerance));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
         let corners = work.mesh.triangles[t as usize];
@@ -384,6 +385,16 @@ fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize
     let inner = (0..3).filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
     let length = |i: usize| facet.xyz[(i + 1) % 3].distance_squared(facet.xyz[(i + 2) % 3]);
     clearly_longest(inner, length)
+}
+
+/// The longest edge of a facet, where it is on the boundary and the facet lower over it than this: what is wrong with it is the
+/// chord's, and no point inside helps.
+fn low_over_boundary(facet: &Facet, boundary: [bool; 3], height: f64) -> Option<usize> {
+    let [a, b, c] = facet.xyz;
+    let side = |i: usize| facet.xyz[(i + 2) % 3].distance(facet.xyz[(i + 1) % 3]);
+    let longest = (0..3).max_by(|&i, &j| side(i).total_cmp(&side(j)))?;
+    let area = (b - a).cross(c - a).length();
+    (boundary[longest] && area <= height * side(longest)).then_some(longest)
 }
 
 /// The longest; of those that only rounding tells apart the first, so that the same part elsewhere gets the same mesh.

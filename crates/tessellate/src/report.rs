@@ -12,6 +12,8 @@ pub struct FaceReport {
     pub proven_error: f64,
     /// Largest distance of a mesh vertex from this face's surface: what the file itself is loose by.
     pub gap: f64,
+    /// Largest distance of the file's own parameter curves on this face from the edges that bound it.
+    pub pcurve_gap: f64,
     /// Which bound proved it ("plane", "second derivatives", "none" …).
     pub bound: &'static str,
     /// The fewest triangles possible, see `docs/report.md`.

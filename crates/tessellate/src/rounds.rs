@@ -3,6 +3,7 @@
 use crate::chart::FaceContext;
 use crate::edges::{EdgeSamples, EdgeUse};
 use crate::face::{FaceResult, Outcome, mesh_face};
+use crate::looseness::pcurve_gap;
 use crate::lower_bound::lower_bound;
 use crate::metric::Limits;
 use crate::options::{Cancel, Options};
@@ -290,6 +291,11 @@ impl Job<'_> {
         report: &mut PartReport,
     ) {
         let closed: Vec<bool> = self.part.edges.iter().map(|e| e.start == e.end).collect();
+        let pcurve_gaps: Vec<f64> = (self.part.faces.par_iter().zip(&self.surfaces))
+            .map(|(face, surface)| {
+                surface.as_ref().map_or(0.0, |surface| pcurve_gap(self.part, face, surface, edges))
+            })
+            .collect();
         for (index, outcome) in outcomes.iter().enumerate() {
             let mut entry = FaceReport {
                 face: index as u32,
@@ -302,6 +308,7 @@ impl Job<'_> {
                     entry.triangles = result.triangles.len();
                     entry.proven_error = result.proven_error;
                     entry.gap = result.gap;
+                    entry.pcurve_gap = pcurve_gaps[index];
                     entry.bound = result.bound;
                     entry.trace = result.trace.clone();
                     entry.zero_area = result.triangles.is_empty();

@@ -1,0 +1,97 @@
+//! How far the file's own curves in the parameters of a face lie off the edges that they stand for.
+//!
+//! Edges bound faces by their curves in space, once for both faces; whoever trims a face by its pcurves instead gets another
+//! boundary, further off by what the two disagree. That is the file's doing, and part of its gap.
+
+use crate::edges::EdgeSamples;
+use crate::surface::FaceSurface;
+use chordal_brep::{Coedge, Edge, Face, Loop, Part, Pcurve};
+use chordal_nurbs::{Curve, CurveInverter, DVec2, DVec3, Surface};
+
+/// Newton steps along a curve, from a place that is nearly the nearest.
+const STEPS: usize = 4;
+
+/// A pcurve whose ends lie further off the edge's than this share of the edge's length is parametrised otherwise than the edge:
+/// which piece of it is meant cannot be told, and nobody can use it.
+const OTHER_PIECE: f64 = 0.1;
+
+/// Parameters this share of the domain beyond its end are at its end.
+const SAME_PARAMETER: f64 = 1e-6;
+
+/// The largest distance of the face's pcurves, lifted to its surface, from their edges' curves, at the ends and in the middle of
+/// every chord. On planes, which need no pcurves, none.
+pub(crate) fn pcurve_gap(part: &Part, face: &Face, surface: &FaceSurface<'_>, edges: &[EdgeSamples]) -> f64 {
+    if matches!(surface.surface, Surface::Plane { .. }) {
+        return 0.0;
+    }
+    let coedges = face.loops.iter().flat_map(|l| match l {
+        Loop::Edges { coedges, .. } => coedges.as_slice(),
+        _ => &[],
+    });
+    let gap = |coedge: &Coedge| {
+        let edge = &part.edges[coedge.edge.index()];
+        let Some(curve) = edge.curve.as_deref() else { return 0.0 };
+        let samples = &edges[coedge.edge.index()];
+        coedge.pcurves.iter().map(|pcurve| off(edge, curve, pcurve, surface, samples)).fold(0.0, f64::max)
+    };
+    coedges.map(gap).fold(0.0, f64::max)
+}
+
+/// The same for one pcurve; none for one that is of no use.
+fn off(
+    edge: &Edge,
+    curve: &Curve,
+    pcurve: &Pcurve,
+    surface: &FaceSurface<'_>,
+    EdgeSamples { t, points, .. }: &EdgeSamples,
+) -> f64 {
+    let uv = |t: f64| {
+        let share = (t - edge.range.start) / edge.range.length();
+        pcurve.curve.point(pcurve.range.start + share * pcurve.range.length())
+    };
+    let lifted = |t: f64| surface.point(uv(t));
+    let (Some(&first), Some(&last)) = (t.first(), t.last()) else { return 0.0 };
+    let length: f64 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
+    let at_ends = lifted(first).distance(points[0]).max(lifted(last).distance(points[points.len() - 1]));
+    if at_ends > OTHER_PIECE * length || [first, last].iter().any(|&t| is_beyond(surface, uv(t))) {
+        return 0.0;
+    }
+    let at = |t: f64| beside(curve, edge, t, lifted(t), surface.resolution);
+    let gaps = t.iter().map(|&t| at(t)).chain(t.windows(2).map(|t| at(0.5 * (t[0] + t[1]))));
+    let gap = gaps.fold(0.0f64, |m, d| if d.is_finite() { m.max(d) } else { f64::INFINITY });
+    if gap.is_finite() { gap } else { 0.0 }
+}
+
+/// True for parameters that the surface has no point for.
+fn is_beyond(surface: &FaceSurface<'_>, p_uv: DVec2) -> bool {
+    let domain = surface.domain();
+    (0..2).any(|i| {
+        let slack = SAME_PARAMETER * (domain.max[i] - domain.min[i]);
+        surface.periods[i].is_none() && (p_uv[i] < domain.min[i] - slack || p_uv[i] > domain.max[i] + slack)
+    })
+}
+
+/// The distance of a point from the edge's curve, beyond the ends of the edge, too, found from parameter `t`.
+fn beside(curve: &Curve, edge: &Edge, t: f64, p: DVec3, resolution: f64) -> f64 {
+    let direct = curve.point(t).distance(p);
+    if direct.partial_cmp(&resolution).is_none_or(|o| o.is_le()) {
+        return direct;
+    }
+    let mut at = t;
+    for _ in 0..STEPS {
+        let jet = curve.jet(at);
+        let next = at + (p - jet.p).dot(jet.d1) / jet.d1.length_squared();
+        if !next.is_finite() {
+            break;
+        }
+        at = if curve.period().is_some() { next } else { edge.range.clamp(next) };
+    }
+    if curve.point(at).distance(p) > resolution {
+        at = CurveInverter::new(curve, edge.range).invert(p, None).t;
+    }
+    let jet = curve.jet(at);
+    let off = p - jet.p;
+    let is_end = at == edge.range.start || at == edge.range.end;
+    // Beyond an end only what lies beside the tangent counts.
+    if is_end { off.reject_from(jet.d1).length() } else { off.length() }.min(direct)
+}
