@@ -42,6 +42,9 @@ const FLIP_HELPS: f64 = 3.0;
 /// distance at all, there would be no end to refining.
 pub(crate) const TURN_LENGTH: f64 = 0.1;
 
+/// A crease that cuts off less than this share of a facet's width passes its corner: a point on it would all but fall on that corner.
+const CREASE_BESIDE: f64 = 0.01;
+
 /// Facets lower than this share of the tolerance may face any way.
 const FOLD_HEIGHT: f64 = 0.05;
 
@@ -310,7 +313,8 @@ impl<'a> Prover<'a> {
             for value in values {
                 let side = corners.map(|c| c[axis] - value);
                 let size = side.iter().fold(0.0f64, |m, s| m.max(s.abs()));
-                if side.iter().any(|&s| s > 1e-6 * size) && side.iter().any(|&s| s < -1e-6 * size) {
+                let beside = CREASE_BESIDE * size;
+                if side.iter().any(|&s| s > beside) && side.iter().any(|&s| s < -beside) {
                     let cuts: Vec<DVec2> = (0..3)
                         .filter(|&i| side[i] * side[(i + 1) % 3] < 0.0)
                         .map(|i| {
@@ -387,14 +391,13 @@ fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize
     clearly_longest(inner, length)
 }
 
-/// The longest edge of a facet, where it is on the boundary and the facet lower over it than this: what is wrong with it is the
-/// chord's, and no point inside helps.
+/// The longest boundary edge of a facet that is lower over it than this: what is wrong with it is the chord's, and no point
+/// inside helps.
 fn low_over_boundary(facet: &Facet, boundary: [bool; 3], height: f64) -> Option<usize> {
     let [a, b, c] = facet.xyz;
     let side = |i: usize| facet.xyz[(i + 2) % 3].distance(facet.xyz[(i + 1) % 3]);
-    let longest = (0..3).max_by(|&i, &j| side(i).total_cmp(&side(j)))?;
-    let area = (b - a).cross(c - a).length();
-    (boundary[longest] && area <= height * side(longest)).then_some(longest)
+    let longest = (0..3).filter(|&i| boundary[i]).max_by(|&i, &j| side(i).total_cmp(&side(j)))?;
+    ((b - a).cross(c - a).length() <= height * side(longest)).then_some(longest)
 }
 
 /// The longest; of those that only rounding tells apart the first, so that the same part elsewhere gets the same mesh.
