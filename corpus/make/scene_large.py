@@ -27,7 +27,7 @@ SIN45 = math.sqrt(0.5)
 
 def body(s: float, t: float) -> Point:
     """The body (metres): s from tail to nose, t once round; 4.5 m long, 1.8 m wide."""
-    a = 2 * math.pi * t
+    a = 2 * math.pi * (1 - t)
     cabin = math.exp(-(((s - 0.47) / 0.2) ** 2))
     ends = math.sin(math.pi * (0.1 + 0.8 * s)) ** 0.5
     width = 0.9 * ends * (1 - 0.12 * cabin * max(0.0, math.sin(a)) ** 2)

@@ -74,10 +74,12 @@ pub(super) fn of(kind: &str, field: &str) -> Option<FieldType> {
         ("Text2" | "Text3" | "AsciiText", "parts") => return one(Flags),
         ("RotationXYZ", "axis") => return one(Text),
         ("ResetTransform", "whatToReset") => return one(Flags),
+        ("Texture2Transform", "rotation") => return one(Floats(1)),
+        ("Texture2Transform", "translation" | "scaleFactor" | "center") => return one(Floats(2)),
+        ("Environment", "ambientColor") => return one(Floats(3)),
         _ => {}
     }
     Some(match field {
-        "point" | "vector" | "axis" | "vertex" | "normal" if kind.ends_with("Set") => return None,
         "point" | "vector" | "vertex" | "normal" => (Floats(3), true),
         "ambientColor" | "diffuseColor" | "specularColor" | "emissiveColor" | "rgb" => (Floats(3), true),
         "shininess" | "transparency" | "uKnotVector" | "vKnotVector" | "sKnotVector" | "tKnotVector"
@@ -87,10 +89,11 @@ pub(super) fn of(kind: &str, field: &str) -> Option<FieldType> {
         "orderedRGBA" | "numVertices" | "index" | "coordIndex" | "materialIndex" | "normalIndex"
         | "textureCoordIndex" | "markerIndex" => (Whole, true),
         "string" => (Text, true),
-        "translation" | "scaleFactor" | "center" | "separation1" | "separation2" | "separation3"
-        | "location" | "direction" | "color" | "ambientColorF" | "fogColor" | "position" | "bboxCenter"
-        | "bboxSize" | "blendColor" | "attenuation" => (Floats(3), false),
-        "rotation" | "scaleOrientation" | "orientation" => (Floats(4), false),
+        "translation" | "translation0" | "translation1" | "directionS" | "directionT" | "scaleFactor"
+        | "center" | "separation1" | "separation2" | "separation3" | "location" | "direction" | "color"
+        | "ambientColorF" | "fogColor" | "position" | "bboxCenter" | "bboxSize" | "blendColor"
+        | "attenuation" => (Floats(3), false),
+        "rotation" | "rotation0" | "rotation1" | "scaleOrientation" | "orientation" => (Floats(4), false),
         "angle" | "creaseAngle" | "width" | "height" | "depth" | "bottomRadius" | "size" | "spacing"
         | "pointSize" | "lineWidth" | "intensity" | "dropOffRate" | "cutOffAngle" | "nearDistance"
         | "farDistance" | "aspectRatio" | "focalDistance" | "heightAngle" | "textureQuality"
@@ -104,7 +107,7 @@ pub(super) fn of(kind: &str, field: &str) -> Option<FieldType> {
         | "type" | "style" | "model" | "family" | "normalBinding" | "materialBinding" | "wrapS" | "wrapT"
         | "filename" | "name" | "description" | "map" | "viewportMapping" | "policy" => (Text, false),
         "image" => (Image, false),
-        "vertexProperty" => (Node, false),
+        "vertexProperty" | "alternateRep" => (Node, false),
         _ => return None,
     })
 }
