@@ -2,7 +2,7 @@
 //!
 //! The files lie outside the repository: in the folder that CHORDAL_MODELS names, else in `../shared/models` beside it.
 
-use chordal_brep::{FaceGeometry, Model, Part};
+use chordal_brep::{Face, FaceGeometry, Model, Part};
 use chordal_nurbs::{NurbsSurface, Surface};
 use std::path::PathBuf;
 
@@ -52,14 +52,12 @@ fn model(name: &str) -> Option<Model> {
 }
 
 fn splines(part: &Part) -> Vec<&NurbsSurface> {
-    let spline = |geometry| match geometry {
-        &FaceGeometry::Surface(ref surface) => match surface.as_ref() {
-            Surface::Nurbs(nurbs) => Some(nurbs),
-            _ => None,
-        },
-        FaceGeometry::Failed(_) => None,
-    };
-    part.faces.iter().filter_map(|face| spline(&face.geometry)).collect()
+    part.faces.iter().filter_map(spline).collect()
+}
+
+fn spline(face: &Face) -> Option<&NurbsSurface> {
+    let FaceGeometry::Surface(surface) = &face.geometry else { return None };
+    if let Surface::Nurbs(nurbs) = surface.as_ref() { Some(nurbs) } else { None }
 }
 
 #[test]
