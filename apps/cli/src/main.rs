@@ -17,6 +17,10 @@ use clap::error::ErrorKind;
 use exit::{Exit, say};
 use std::process::ExitCode;
 
+/// Meshing is many short-lived lists: this allocator saves a tenth of the time of light files.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     // A face that panics is that face's failure, reported by the library: the hook's own words would be noise.
     guard::silence();

@@ -18,7 +18,7 @@
 //!
 //! Not proven: that slope is sampled, because second derivatives say little of it at a pole; 1.5 times what was seen is used.
 
-use chordal_nurbs::{DVec2, DVec3, Piece, SurfaceBounds, UvBox};
+use chordal_nurbs::{Component, DVec2, DVec3, Piece, SurfaceBounds, UvBox};
 
 /// One side of a triangle, as the prover sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -164,11 +164,23 @@ impl Along<'_, '_> {
         let size = uv_box.size();
         let scale = 1.0 / (self.parts * self.parts) as f64;
         let least = pieces.iter().fold(f64::INFINITY, |m, p| m.min(p.least_weight));
-        let value = bend(pieces.iter().map(|p| p.along(self.n, self.origin)), d, share, size) * scale / least;
-        let weight = bend(pieces.iter().map(Piece::weight), d, share, size) * scale / least;
+        let value =
+            bend(enclosures(pieces, |p| p.along(self.n, self.origin)), d, share, size) * scale / least;
+        let weight = bend(enclosures(pieces, Piece::weight), d, share, size) * scale / least;
         let kinks = 0.25 * (kink.x * size.x + kink.y * size.y) / self.parts as f64;
         seen * (1.0 + weight) + value + kinks
     }
+}
+
+/// Second derivatives in the middle of each piece and how far they stray.
+fn enclosures(
+    pieces: &[Piece],
+    along: impl Fn(&Piece) -> Component,
+) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
+    pieces.iter().map(move |piece| {
+        let along = along(piece);
+        (along.second, piece.reach(&along))
+    })
 }
 
 /// How far a function with these second derivatives (middle and reach, piece by piece) strays from linear.

@@ -4,13 +4,16 @@
 //! its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
 //! Cells of a NURBS surface are its Bézier patches (rational ones subdivided), in homogeneous coordinates.
 
-use crate::{Curve, Range, Surface, SurfaceJet, UvBox};
+use crate::facet::Component;
+use crate::{Range, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3, DVec4};
 
 mod cells;
 mod net;
+mod swept;
 
 use cells::CellTable;
+use swept::{ProfileTable, Thirds};
 
 /// Homogeneous vectors near `center`: the spatial part within `radius`, the weight within `weight_radius`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,9 +24,9 @@ pub struct Ball4 {
 }
 
 impl Ball4 {
-    /// All vectors no longer than `radius`, without a weight.
-    fn around_zero(radius: f64) -> Self {
-        Self { center: DVec4::ZERO, radius, weight_radius: 0.0 }
+    /// Vectors without a weight.
+    fn around(center: DVec3, radius: f64) -> Self {
+        Self { center: center.extend(0.0), radius, weight_radius: 0.0 }
     }
 }
 
@@ -56,6 +59,7 @@ impl Cell {
                 vv + uvv * step.x + vvv * step.y,
             ],
             third: self.third,
+            center: b.center(),
             half: b.size() * 0.5,
             offset: step.abs(),
             least_weight: self.least_weight,
@@ -73,10 +77,12 @@ pub struct Piece {
     /// uu, uv, vv in the middle of the piece.
     second: [DVec4; 3],
     third: [Ball4; 4],
+    /// The middle of the piece; not finite where the piece stands for several places of a closed surface.
+    pub(crate) center: DVec2,
     /// Half the extent in u and v.
-    half: DVec2,
+    pub(crate) half: DVec2,
     /// How far the middle may lie from where `second` was known, which adds to its uncertainty.
-    offset: DVec2,
+    pub(crate) offset: DVec2,
     /// A lower bound of the weight.
     pub least_weight: f64,
     /// Upper bounds of the weight's rates of change.
@@ -86,41 +92,38 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// The second derivatives of w·(A − (anchor − origin) w) in the middle, and how far they stray from that over the piece.
-    pub fn along(&self, w: DVec3, anchor: DVec3) -> ([f64; 3], [f64; 3]) {
+    /// The derivatives of w·(A − (anchor − origin) w).
+    pub fn along(&self, w: DVec3, anchor: DVec3) -> Component {
         self.along_homogeneous(w.extend(-w.dot(anchor - self.origin)))
     }
 
     /// The same for the weight itself.
-    pub fn weight(&self) -> ([f64; 3], [f64; 3]) {
+    pub fn weight(&self) -> Component {
         self.along_homogeneous(DVec4::W)
     }
 
-    fn along_homogeneous(&self, w: DVec4) -> ([f64; 3], [f64; 3]) {
-        let length = w.truncate().length();
-        let at_center = self.third.map(|ball| ball.center.dot(w).abs());
-        let stray = self.third.map(|ball| ball.radius * length + ball.weight_radius * w.w.abs());
+    /// How far second derivatives stray from those in the middle over the piece.
+    pub fn reach(&self, along: &Component) -> [f64; 3] {
         let (h, far) = (self.half, self.half + self.offset);
-        let reach =
-            |i: usize| at_center[i] * h.x + at_center[i + 1] * h.y + stray[i] * far.x + stray[i + 1] * far.y;
-        (self.second.map(|s| s.dot(w)), [reach(0), reach(1), reach(2)])
+        let Component { third, stray, .. } = along;
+        std::array::from_fn(|i| {
+            third[i].abs() * h.x + third[i + 1].abs() * h.y + stray[i] * far.x + stray[i + 1] * far.y
+        })
     }
-}
 
-/// Bounds of the first three derivatives of a profile curve over intervals of its parameter.
-#[derive(Clone, Debug)]
-struct ProfileTable {
-    /// Interval i runs from `breaks[i]` to `breaks[i + 1]`; the curve is smooth in it.
-    breaks: Vec<f64>,
-    /// Norms of the first, second and third derivative per interval.
-    norms: Vec<[f64; 3]>,
-    /// At `breaks[i]`, the jump of the first derivative.
-    jumps: Vec<f64>,
+    fn along_homogeneous(&self, w: DVec4) -> Component {
+        let length = w.truncate().length();
+        Component {
+            second: self.second.map(|s| s.dot(w)),
+            third: self.third.map(|ball| ball.center.dot(w)),
+            stray: self.third.map(|ball| ball.radius * length + ball.weight_radius * w.w.abs()),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
 enum Prepared {
-    /// Third derivatives by formula.
+    /// Higher derivatives by formula.
     Elementary,
     Profile(ProfileTable),
     Cells(CellTable),
@@ -172,6 +175,14 @@ impl<'a> SurfaceBounds<'a> {
         self.wrap.point(self.surface, p_uv)
     }
 
+    /// The surface at a point of the chart and its weight there, to rounding.
+    pub(crate) fn weighted_point(&self, p_uv: DVec2) -> (DVec3, f64) {
+        match &self.prepared {
+            Prepared::Cells(table) => table.point(self.wrap.apply(p_uv)),
+            _ => (self.point(p_uv), 1.0),
+        }
+    }
+
     /// The unit normal of the surface, at any turn of a closed one; `None` where it has none.
     pub fn normal(&self, p_uv: DVec2) -> Option<DVec3> {
         self.surface.normal(self.wrap.apply(p_uv))
@@ -203,9 +214,12 @@ impl<'a> SurfaceBounds<'a> {
         let mut jump = DVec2::ZERO;
         let (us, u_count) = wrap_range(uv_box.u(), self.wrap.0[0]);
         let (vs, v_count) = wrap_range(uv_box.v(), self.wrap.0[1]);
-        for &u in &us[..u_count] {
-            for &v in &vs[..v_count] {
+        for &(u, u_shift) in &us[..u_count] {
+            for &(v, v_shift) in &vs[..v_count] {
+                let from = out.len();
                 jump = jump.max(self.pieces_inside(UvBox::from_ranges(u, v), out));
+                let shift = DVec2::new(u_shift, v_shift);
+                out[from..].iter_mut().for_each(|piece| piece.center += shift);
             }
         }
         jump
@@ -215,74 +229,35 @@ impl<'a> SurfaceBounds<'a> {
         match &self.prepared {
             Prepared::Unknown => DVec2::ZERO,
             Prepared::Elementary => {
-                self.push(b, self.elementary_third(b), out);
+                self.push(b, out, |jet, half| swept::elementary_thirds(self.surface, b, jet, half));
                 DVec2::ZERO
             }
-            Prepared::Profile(table) => self.profile_pieces(table, b, out),
+            Prepared::Profile(table) => table.pieces(self, b, out),
             Prepared::Cells(table) => table.pieces(b, out),
         }
     }
 
-    /// A piece of a surface that is known by its second derivatives in the middle and bounds of the third.
-    fn push(&self, b: UvBox, third: [f64; 4], out: &mut Vec<Piece>) {
+    /// A piece of a surface that is known by its derivatives in the middle and bounds of the fourth.
+    fn push(&self, b: UvBox, out: &mut Vec<Piece>, thirds: impl FnOnce(&SurfaceJet, DVec2) -> Thirds) {
         let jet = self.surface.jet(b.center());
         let half = b.size() * 0.5;
-        let norm = |d: DVec3, i: usize| d.length() + third[i] * half.x + third[i + 1] * half.y;
+        let Thirds { center, stray } = thirds(&jet, half);
+        let third: [Ball4; 4] = std::array::from_fn(|i| Ball4::around(center[i], stray[i]));
+        let norm = |d: DVec3, i: usize| {
+            let rate = |ball: &Ball4| ball.center.length() + ball.radius;
+            d.length() + rate(&third[i]) * half.x + rate(&third[i + 1]) * half.y
+        };
         out.push(Piece {
             origin: DVec3::ZERO,
             second: [jet.duu, jet.duv, jet.dvv].map(|d| d.extend(0.0)),
-            third: third.map(Ball4::around_zero),
+            center: b.center(),
             half,
             offset: DVec2::ZERO,
             least_weight: 1.0,
             weight_rate: DVec2::ZERO,
             norms: [norm(jet.duu, 0), norm(jet.duv, 1), norm(jet.dvv, 2)],
+            third,
         });
-    }
-
-    /// Third derivatives of surfaces that are trigonometric in u (and v).
-    fn elementary_third(&self, b: UvBox) -> [f64; 4] {
-        match self.surface {
-            Surface::Cylinder { radius, .. } => [*radius, 0.0, 0.0, 0.0],
-            Surface::Cone { radius, half_angle, .. } => {
-                let t = half_angle.tan();
-                let r = (radius + b.min.y * t).abs().max((radius + b.max.y * t).abs());
-                [r, t.abs(), 0.0, 0.0]
-            }
-            Surface::Sphere { radius, .. } => [*radius; 4],
-            Surface::Torus { major, minor, .. } => [major + minor, *minor, *minor, *minor],
-            _ => [0.0; 4],
-        }
-    }
-
-    fn profile_pieces(&self, table: &ProfileTable, b: UvBox, out: &mut Vec<Piece>) -> DVec2 {
-        let extrusion = matches!(self.surface, Surface::Extrusion { .. });
-        let along = if extrusion { b.u() } else { b.v() };
-        let (from, to) = overlapped(&table.breaks, along);
-        let mut jump = 0.0f64;
-        for i in from..to {
-            let range = Range::new(along.start.max(table.breaks[i]), along.end.min(table.breaks[i + 1]));
-            let [first, second, third] = table.norms[i];
-            if i > from {
-                jump = jump.max(table.jumps[i]);
-            }
-            if extrusion {
-                self.push(UvBox::from_ranges(range, b.v()), [third, 0.0, 0.0, 0.0], out);
-            } else {
-                let piece = UvBox::from_ranges(b.u(), range);
-                let radius = self.largest_radius(piece, first);
-                self.push(piece, [radius, first, second, third], out);
-            }
-        }
-        if extrusion { DVec2::new(jump, 0.0) } else { DVec2::new(0.0, jump) }
-    }
-
-    /// The largest distance from the axis of a revolution over a box, from its middle and the profile's speed.
-    fn largest_radius(&self, b: UvBox, speed: f64) -> f64 {
-        let Surface::Revolution { axis_origin, axis, .. } = self.surface else { return 0.0 };
-        let d = self.surface.point(b.center()) - *axis_origin;
-        let axis = axis.normalize_or_zero();
-        (d - axis * d.dot(axis)).length() + speed * 0.5 * b.size().y
     }
 }
 
@@ -337,21 +312,22 @@ fn wrap_into(t: f64, base: Option<Range>) -> f64 {
     }
 }
 
-/// The parts of the base range that a range covers after wrapping: up to three (all of it, or two ends).
-fn wrap_range(range: Range, base: Option<Range>) -> ([Range; 2], usize) {
-    let Some(base) = base else { return ([range; 2], 1) };
+/// The parts of the base range that a range covers after wrapping: up to two, each with what leads back to where it was.
+fn wrap_range(range: Range, base: Option<Range>) -> ([(Range, f64); 2], usize) {
+    let Some(base) = base else { return ([(range, 0.0); 2], 1) };
     if range.start >= base.start && range.end <= base.end {
-        return ([range; 2], 1);
+        return ([(range, 0.0); 2], 1);
     }
     if range.length() >= base.length() {
-        return ([base; 2], 1);
+        return ([(base, f64::NAN); 2], 1);
     }
     let start = base.start + (range.start - base.start).rem_euclid(base.length());
-    let end = start + range.length();
+    let (end, shift) = (start + range.length(), range.start - start);
     if end <= base.end {
-        return ([Range::new(start, end); 2], 1);
+        return ([(Range::new(start, end), shift); 2], 1);
     }
-    ([Range::new(start, base.end), Range::new(base.start, base.start + (end - base.end))], 2)
+    let before = (Range::new(start, base.end), shift);
+    ([before, (Range::new(base.start, base.start + (end - base.end)), shift + base.length())], 2)
 }
 
 /// Indices of the intervals between `breaks` that a range meets in more than a point; at least one.
@@ -362,42 +338,4 @@ fn overlapped(breaks: &[f64], range: Range) -> (usize, usize) {
     let from = breaks[1..last].partition_point(|&b| b <= range.start + slack);
     let to = breaks[1..last].partition_point(|&b| b < range.end - slack);
     (from, to.max(from) + 1)
-}
-
-/// Splits each interval into `parts`.
-fn subdivided(breaks: &[f64], parts: usize) -> Vec<f64> {
-    let mut fine = Vec::with_capacity((breaks.len() - 1) * parts + 1);
-    for pair in breaks.windows(2) {
-        fine.extend((0..parts).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64));
-    }
-    fine.extend(breaks.last());
-    fine
-}
-
-impl ProfileTable {
-    /// Bounds over quarters of every smooth piece keep the enclosures tight without a search per facet.
-    const PARTS: usize = 4;
-
-    fn new(profile: &Curve, range: Range) -> Self {
-        let mut coarse = vec![range.start];
-        coarse.extend(profile.all_breaks(range));
-        coarse.push(range.end);
-        let breaks = subdivided(&coarse, Self::PARTS);
-        let norms = breaks
-            .windows(2)
-            .map(|p| [1, 2, 3].map(|order| profile.derivative_bound(order, Range::new(p[0], p[1]))))
-            .collect();
-        let jumps = breaks.iter().enumerate().map(|(i, &t)| {
-            if i == 0 || i + 1 == breaks.len() || i % Self::PARTS != 0 {
-                return 0.0;
-            }
-            let step = 1e-9 * (breaks[i + 1] - breaks[i - 1]);
-            let (before, after) = (profile.jet(t - step), profile.jet(t + step));
-            let jump = (after.d1 - before.d1).length();
-            let smooth = 4.0 * step * (after.d2.length() + before.d2.length()) + 1e-9 * after.d1.length();
-            if jump > smooth { jump } else { 0.0 }
-        });
-        let jumps = jumps.collect();
-        Self { breaks, norms, jumps }
-    }
 }

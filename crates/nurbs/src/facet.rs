@@ -7,9 +7,13 @@
 //! Sound as long as the mesh lies nearer to the surface than its smallest radius of curvature; facets that lean too far against
 //! the surface are rejected.
 
+mod closer;
 mod elementary;
 mod extruded;
+mod form;
 mod general;
+
+pub use form::Component;
 
 use crate::{Piece, Surface, SurfaceBounds};
 use glam::{DVec2, DVec3};
@@ -84,6 +88,11 @@ pub fn facet_bound(
     let rounding = 32.0 * f64::EPSILON * facet.xyz.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
     bound.error += rounding;
     bound
+}
+
+/// Barycentric coordinates of point (i, j) of the lattice that divides every edge of a triangle in `parts`.
+fn lattice_point(i: usize, j: usize, parts: usize) -> [f64; 3] {
+    [i, j, parts - i - j].map(|k| k as f64 / parts as f64)
 }
 
 /// Barycentric coordinates of the points that divide every edge of a triangle in `parts`.

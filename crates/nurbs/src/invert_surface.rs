@@ -99,7 +99,10 @@ impl<'a> SurfaceInverter<'a> {
             Method::Elementary => elementary::invert(self.surface, p_xyz, near),
             Method::Extrusion(inverter) => inverter.invert(p_xyz, near),
             Method::Revolution(inverter) => inverter.invert(p_xyz, near),
-            Method::Grid { terrain, grid, uv } => general::invert(terrain, *uv, grid, p_xyz, near),
+            Method::Grid { terrain, grid, uv } => {
+                let found = general::invert(terrain, *uv, grid, p_xyz, near);
+                return Inversion { uv: self.placed(found.uv, near), ..found };
+            }
             Method::Offset { terrain, basis_terrain, basis } => {
                 invert_offset(terrain, basis_terrain, basis, p_xyz, near)
             }

@@ -46,7 +46,7 @@ pub use convert::{NurbsParameters, ParameterMap};
 pub use curve::{CompositeSegment, Curve, CurveJet};
 pub use curve2::{Curve2, Curve2Jet};
 pub use error::NurbsError;
-pub use facet::{Facet, FacetBound, facet_bound};
+pub use facet::{Component, Facet, FacetBound, facet_bound};
 pub use frame::{Frame, Frame2};
 pub use invert_curve::{CurveInversion, CurveInverter};
 pub use invert_surface::{Inversion, SurfaceInverter};

@@ -193,6 +193,17 @@ impl Surface {
         }
     }
 
+    /// As [`Surface::normal`], where the derivatives there are known already.
+    pub fn normal_of(&self, p_uv: DVec2, jet: &SurfaceJet) -> Option<DVec3> {
+        match self {
+            Surface::Extrusion { .. } | Surface::Revolution { .. } | Surface::Nurbs(_) => {
+                poles::regular_normal(self.domain(), jet.du, jet.dv)
+                    .or_else(|| poles::limit_normal(self, p_uv))
+            }
+            _ => self.normal(p_uv),
+        }
+    }
+
     /// The parameters the surface is defined for: infinite where unbounded, `0..=2π` for angles, `±π/2` for a
     /// sphere's latitude. A cone reaches over both nappes.
     pub fn domain(&self) -> UvBox {

@@ -128,10 +128,18 @@ impl FaceContext<'_, '_> {
     fn inverted(&self, xyz: &[DVec3], start: Option<DVec2>) -> Vec<DVec2> {
         let mut near = start;
         let mut uv: Vec<DVec2> = Vec::with_capacity(xyz.len());
-        for &p in xyz {
+        for (i, &p) in xyz.iter().enumerate() {
             let found = self.surface.invert(p, near);
-            near = Some(found);
             uv.push(found);
+            near = Some(match (uv.as_slice(), xyz.get(i + 1)) {
+                // Straight on: nearer than the last point, most of the time.
+                (&[.., last, _], Some(next)) => {
+                    let (run, step) = (p.distance(xyz[i - 1]), p.distance(*next));
+                    let share = if run > 0.0 { (step / run).min(2.0) } else { 0.0 };
+                    self.surface.inside(found + (found - last) * share)
+                }
+                _ => found,
+            });
         }
         uv
     }

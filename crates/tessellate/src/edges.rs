@@ -8,7 +8,7 @@ use crate::metric::{Limits, Sizing};
 use crate::prove::{TURN_LENGTH, turns_too_far};
 use crate::surface::FaceSurface;
 use chordal_brep::{Edge, Part, Pcurve};
-use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range};
+use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, SurfaceJet};
 
 /// One edge as a polyline.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -292,7 +292,7 @@ impl Probes {
             _ => 1,
         };
         let mut probes = Self { t: vec![range.start], sum: vec![0.0], curvature_total: 0.0 };
-        let mut near = vec![None; uses.len()];
+        let mut tracks = vec![None; uses.len()];
         for pair in breaks.windows(2) {
             let width = (pair[1] - pair[0]) / (parts * PROBES) as f64;
             for k in 0..parts * PROBES {
@@ -301,8 +301,8 @@ impl Probes {
                 let own = own_rate(curve, &jet, limits);
                 let by_faces = uses
                     .iter()
-                    .zip(&mut near)
-                    .map(|(u, near)| u.rate(&jet, t, range, near, limits))
+                    .zip(&mut tracks)
+                    .map(|(u, track)| u.rate(&jet, t, range, track, limits))
                     .fold(0.0, f64::max);
                 probes.curvature_total += own * width;
                 let last = probes.sum[probes.sum.len() - 1];
@@ -353,6 +353,17 @@ fn own_rate(curve: &Curve, jet: &CurveJet, limits: &Limits) -> f64 {
     if speed > 0.0 { (jet.d1.cross(jet.d2).length() / (8.0 * limits.tolerance * speed)).sqrt() } else { 0.0 }
 }
 
+/// Where on a face's surface the last probe was and how fast the curve moved there.
+#[derive(Clone, Copy)]
+struct Track {
+    t: f64,
+    uv: DVec2,
+    rate: DVec2,
+}
+
+/// A probe is followed from the last one where the surface passes it within this share of the way.
+const ON_TRACK: f64 = 0.1;
+
 impl EdgeUse<'_, '_> {
     /// Where on the face the point at `t` lies: by the file, where it says so, else the nearest point's parameters.
     fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<DVec2>) -> DVec2 {
@@ -365,19 +376,15 @@ impl EdgeUse<'_, '_> {
     }
 
     /// Chords per unit of parameter that the face asks for.
-    fn rate(&self, jet: &CurveJet, t: f64, range: Range, near: &mut Option<DVec2>, limits: &Limits) -> f64 {
+    fn rate(&self, jet: &CurveJet, t: f64, range: Range, track: &mut Option<Track>, limits: &Limits) -> f64 {
         if matches!(self.surface.surface, chordal_nurbs::Surface::Plane { .. }) {
             return 0.0;
         }
-        let uv = self.parameters(jet.p, t, range, *near);
-        *near = Some(uv);
-        let s = self.surface.jet(uv);
-        let Some(sizing) = Sizing::new(&s, limits) else { return 0.0 };
+        let (uv, s) = self.place(jet, t, range, track.as_ref());
         // The direction in parameter space that maps to the curve's tangent, by least squares.
-        let (e, f, g) = (s.du.length_squared(), s.du.dot(s.dv), s.dv.length_squared());
-        let (a, b) = (s.du.dot(jet.d1), s.dv.dot(jet.d1));
-        let det = e * g - f * f;
-        let d = DVec2::new((a * g - b * f) / det, (b * e - a * f) / det);
+        let d = least_squares(&s, jet.d1);
+        *track = Some(Track { t, uv, rate: d });
+        let Some(sizing) = Sizing::new(&s, limits) else { return 0.0 };
         let rate = sizing.metric.length(d);
         // Across the edge the face curves, too, and far enough for a second row.
         let across = sizing.metric.determinant().max(0.0).sqrt() / sizing.area.max(1e-300) * jet.d1.length()
@@ -385,4 +392,32 @@ impl EdgeUse<'_, '_> {
         let doubly = sizing.gauss > 0.0 && across * self.reach > 0.7;
         if doubly { rate / DOUBLY_CURVED_CHORD } else { rate }
     }
+
+    /// Parameters of a point of the edge and the surface about there.
+    fn place(&self, jet: &CurveJet, t: f64, range: Range, track: Option<&Track>) -> (DVec2, SurfaceJet) {
+        if let Some(track) = track.filter(|_| self.pcurve.is_none() && !self.surface.is_elementary())
+            && let Some(found) = self.followed(jet, t, track)
+        {
+            return found;
+        }
+        let uv = self.parameters(jet.p, t, range, track.map(|track| track.uv));
+        (uv, self.surface.jet(uv))
+    }
+
+    /// Straight on from the last probe, and a step of Gauss and Newton from there: as near as a spacing needs.
+    fn followed(&self, jet: &CurveJet, t: f64, track: &Track) -> Option<(DVec2, SurfaceJet)> {
+        let guess = self.surface.inside(track.uv + track.rate * (t - track.t));
+        let s = self.surface.jet(guess);
+        let r = jet.p - s.p;
+        let on_track = r.length() <= ON_TRACK * jet.d1.length() * (t - track.t).abs();
+        let uv = self.surface.inside(guess + least_squares(&s, r));
+        (on_track && uv.is_finite()).then_some((uv, s))
+    }
+}
+
+/// The step in parameter space that comes nearest to one in space.
+fn least_squares(s: &SurfaceJet, step: DVec3) -> DVec2 {
+    let (e, f, g) = (s.du.length_squared(), s.du.dot(s.dv), s.dv.length_squared());
+    let (a, b) = (s.du.dot(step), s.dv.dot(step));
+    DVec2::new(a * g - b * f, b * e - a * f) / (e * g - f * f)
 }

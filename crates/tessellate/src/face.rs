@@ -205,7 +205,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         let per_chord = SIDEWAYS / (8.0 * self.limits.tolerance);
         self.metrics.push(metric.plus(first, self.floor).plus(sideways, per_chord));
         self.xyz.push(jet.p);
-        self.normals.push(self.context.surface.normal(p_uv));
+        self.normals.push(self.context.surface.normal_at(p_uv, &jet));
         self.at_pole.push(self.context.surface.pole_at(jet.p, self.context.resolution).is_some());
     }
 

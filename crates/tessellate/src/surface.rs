@@ -38,6 +38,11 @@ impl<'a> FaceSurface<'a> {
         self.wrap.jet(self.surface, p_uv)
     }
 
+    /// The unit normal at a point whose jet is known; where it is undefined, zero.
+    pub fn normal_at(&self, p_uv: DVec2, jet: &SurfaceJet) -> DVec3 {
+        self.surface.normal_of(self.wrap.apply(p_uv), jet).unwrap_or(DVec3::ZERO)
+    }
+
     /// The unit normal; where it is undefined, zero.
     pub fn normal(&self, p_uv: DVec2) -> DVec3 {
         self.surface.normal(self.wrap.apply(p_uv)).unwrap_or(DVec3::ZERO)
@@ -77,6 +82,15 @@ impl<'a> FaceSurface<'a> {
             uv += step;
         }
         uv
+    }
+
+    /// Held to the domain in directions that are not closed.
+    pub fn inside(&self, p_uv: DVec2) -> DVec2 {
+        let held = self.domain().clamp(p_uv);
+        DVec2::new(
+            if self.periods[0].is_some() { p_uv.x } else { held.x },
+            if self.periods[1].is_some() { p_uv.y } else { held.y },
+        )
     }
 
     /// The same point of the surface, moved by whole periods to be nearest to `near`.

@@ -3,9 +3,10 @@
 //! A box is covered by cells about as large as itself: larger ones would be looser than need be, smaller ones more than
 //! need be. So there are levels of cells, each half as large, in each direction, made when first asked for.
 
+use super::net::Patch;
 use super::{Cell, Piece, net, overlapped};
-use crate::{BezierPatch, NurbsSurface, Range, UvBox};
-use glam::DVec2;
+use crate::{NurbsSurface, Range, UvBox};
+use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 
 /// Cells are at most this many times halved.
@@ -17,9 +18,17 @@ const SLACK: f64 = 0.02;
 /// The cells of one patch at one pair of levels, row by row.
 type Level = Vec<OnceLock<Box<Cell>>>;
 
-/// The cells of one patch: level (a, b) at `a * (MAX_LEVEL + 1) + b`.
+/// The cells of one patch, made when first asked for.
 #[derive(Clone, Debug, Default)]
-struct PatchCells(OnceLock<Vec<OnceLock<Level>>>);
+struct PatchCells(OnceLock<Levels>);
+
+#[derive(Clone, Debug)]
+struct Levels {
+    /// No finer level than this is worth its while.
+    finest: usize,
+    /// Level (a, b) at `a * (finest + 1) + b`.
+    levels: Vec<OnceLock<Level>>,
+}
 
 /// Cells of a NURBS surface over a part of its domain.
 #[derive(Clone, Debug)]
@@ -27,9 +36,9 @@ pub(super) struct CellTable {
     pub spans_u: Vec<f64>,
     pub spans_v: Vec<f64>,
     /// The patch over span (i, j) at `i * (spans_v.len() - 1) + j`.
-    patches: Vec<(UvBox, BezierPatch)>,
+    patches: Vec<Patch>,
     cells: Vec<PatchCells>,
-    finest: usize,
+    resolution: f64,
     /// Jumps of Su across `spans_u[i]` and of Sv across `spans_v[j]`, the largest along the line.
     pub jumps_u: Vec<f64>,
     pub jumps_v: Vec<f64>,
@@ -55,12 +64,18 @@ impl CellTable {
                 jumps_v[j] = jumps_v[j].max(net::jump_v(&patches[k - 1], &patches[k]));
             }
         }
-        // The slack of a cell shrinks with the fourth power of its size.
-        let slack = patches.iter().map(|(span, patch)| net::slack(patch, *span)).fold(0.0, f64::max);
-        let finest = (slack / (SLACK * resolution)).log2() / 4.0;
         let cells = vec![PatchCells::default(); patches.len()];
-        let finest = finest.ceil().clamp(0.0, MAX_LEVEL as f64) as usize;
-        Some(Self { spans_u, spans_v, patches, cells, finest, jumps_u, jumps_v })
+        let patches = patches.iter().map(|(span, patch)| Patch::new(*span, patch)).collect();
+        Some(Self { spans_u, spans_v, patches, cells, resolution, jumps_u, jumps_v })
+    }
+
+    /// The surface at a point of the domain, and its weight there: several times quicker than from the knots.
+    pub fn point(&self, uv: DVec2) -> (DVec3, f64) {
+        let inner = |spans: &[f64], t: f64| spans[1..spans.len() - 1].partition_point(|&s| s <= t);
+        let (i, j) = (inner(&self.spans_u, uv.x), inner(&self.spans_v, uv.y));
+        let patch = &self.patches[i * (self.spans_v.len() - 1) + j];
+        let h = patch.net.point((uv - patch.span.min) / patch.span.size());
+        (patch.origin + h.truncate() / h.w, h.w)
     }
 
     /// Appends the pieces that cover the box; returns the jumps inside it.
@@ -79,9 +94,10 @@ impl CellTable {
     }
 
     fn patch_pieces(&self, k: usize, b: UvBox, out: &mut Vec<Piece>) {
-        let span = self.patches[k].0;
+        let levels = self.levels(k);
+        let span = self.patches[k].span;
         let b = UvBox::new(b.min.max(span.min), b.max.min(span.max));
-        let (u_level, v_level) = (self.level(span.u(), b.u()), self.level(span.v(), b.v()));
+        let (u_level, v_level) = (levels.level(span.u(), b.u()), levels.level(span.v(), b.v()));
         let (us, vs) = (covered(span.u(), b.u(), u_level), covered(span.v(), b.v(), v_level));
         let size = span.size() / DVec2::new((1 << u_level) as f64, (1 << v_level) as f64);
         for a in us.clone() {
@@ -93,20 +109,29 @@ impl CellTable {
         }
     }
 
+    fn levels(&self, k: usize) -> &Levels {
+        self.cells[k].0.get_or_init(|| {
+            // The slack of a cell shrinks with the fourth power of its size.
+            let finest = (self.patches[k].slack() / (SLACK * self.resolution)).log2() / 4.0;
+            let finest = finest.ceil().clamp(0.0, MAX_LEVEL as f64) as usize;
+            Levels { finest, levels: vec![OnceLock::new(); (finest + 1) * (finest + 1)] }
+        })
+    }
+
+    fn cell(&self, k: usize, levels: [usize; 2], at: [usize; 2]) -> &Cell {
+        let all = self.levels(k);
+        let level = all.levels[levels[0] * (all.finest + 1) + levels[1]]
+            .get_or_init(|| vec![OnceLock::new(); 1 << (levels[0] + levels[1])]);
+        level[(at[0] << levels[1]) + at[1]]
+            .get_or_init(|| Box::new(self.patches[k].cell(at, levels.map(|l| 1 << l))))
+    }
+}
+
+impl Levels {
     /// The level whose cells are about as long as the range, and no shorter.
     fn level(&self, span: Range, range: Range) -> usize {
         let times = span.length() / range.length().max(f64::MIN_POSITIVE);
         (0..self.finest).take_while(|&level| times >= (2 << level) as f64).count()
-    }
-
-    fn cell(&self, k: usize, levels: [usize; 2], at: [usize; 2]) -> &Cell {
-        let all = self.cells[k].0.get_or_init(|| vec![OnceLock::new(); (MAX_LEVEL + 1) * (MAX_LEVEL + 1)]);
-        let level = all[levels[0] * (MAX_LEVEL + 1) + levels[1]]
-            .get_or_init(|| vec![OnceLock::new(); 1 << (levels[0] + levels[1])]);
-        level[(at[0] << levels[1]) + at[1]].get_or_init(|| {
-            let (span, patch) = &self.patches[k];
-            Box::new(net::cell_of(patch, *span, at, levels.map(|l| 1 << l)))
-        })
     }
 }
 

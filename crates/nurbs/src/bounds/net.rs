@@ -4,11 +4,13 @@
 //! n·(S − a) = n·(A − a w)/w, so it is enough to know the derivatives of the polynomial (A, w).
 
 use super::{Ball4, Cell};
+use crate::basis::Basis;
 use crate::{BezierPatch, UvBox};
 use glam::{DVec2, DVec3, DVec4};
 
 /// A control net with its degrees; homogeneous points (x w, y w, z w, w).
-struct Net {
+#[derive(Clone, Debug)]
+pub(super) struct Net {
     degree: [usize; 2],
     points: Vec<DVec4>,
 }
@@ -49,36 +51,193 @@ impl Net {
             }
         }
     }
+}
 
-    /// The net of the derivative along `axis`, over a box of this length in that direction.
-    fn derivative(&self, axis: usize, length: f64) -> Net {
-        if self.degree[axis] == 0 {
-            return Net { degree: [0, 0], points: vec![DVec4::ZERO] };
+/// Degrees below this one are evaluated without touching the heap.
+const STACK_WIDTH: usize = 10;
+
+impl Net {
+    /// The value at a point of the unit square.
+    pub fn point(&self, p: DVec2) -> DVec4 {
+        let [m, n] = self.degree;
+        if m.max(n) >= STACK_WIDTH {
+            let (bu, bv) = (Basis::<1>::bernstein(m, p.x), Basis::<1>::bernstein(n, p.y));
+            return self.blend(bu.row(0), bv.row(0));
         }
-        let mut degree = self.degree;
+        let (bu, bv) = (bernstein(m, p.x), bernstein(n, p.y));
+        self.blend(&bu[..=m], &bv[..=n])
+    }
+
+    fn blend(&self, bu: &[f64], bv: &[f64]) -> DVec4 {
+        let rows = self.points.chunks_exact(bv.len()).zip(bu);
+        rows.fold(DVec4::ZERO, |sum, (row, &b)| {
+            sum + row.iter().zip(bv).fold(DVec4::ZERO, |sum, (&p, &b)| sum + p * b) * b
+        })
+    }
+}
+
+/// The Bernstein polynomials of this degree at `t`.
+fn bernstein(degree: usize, t: f64) -> [f64; STACK_WIDTH] {
+    let mut values = [0.0; STACK_WIDTH];
+    values[0] = 1.0;
+    for level in 1..=degree {
+        let mut saved = 0.0;
+        for value in &mut values[..level] {
+            let old = *value;
+            *value = saved + (1.0 - t) * old;
+            saved = t * old;
+        }
+        values[level] = saved;
+    }
+    values
+}
+
+/// A Bézier patch over its span, measured from the middle of its net.
+#[derive(Clone, Debug)]
+pub(super) struct Patch {
+    pub span: UvBox,
+    pub origin: DVec3,
+    pub net: Net,
+}
+
+impl Patch {
+    pub fn new(span: UvBox, patch: &BezierPatch) -> Self {
+        let origin = middle(patch);
+        Self { span, origin, net: Net::new(patch, origin) }
+    }
+
+    /// Cell `at` of the patch cut into `parts` in u and v.
+    pub fn cell(&self, at: [usize; 2], parts: [usize; 2]) -> Cell {
+        let size = self.span.size() / DVec2::new(parts[0] as f64, parts[1] as f64);
+        let corner = self.span.min + DVec2::new(at[0] as f64, at[1] as f64) * size;
+        let over = UvBox::new(corner, corner + size);
+        if parts == [1, 1] {
+            return cell(&self.net, self.origin, over);
+        }
+        let mut net = self.net.clone();
+        for axis in 0..2 {
+            if parts[axis] > 1 {
+                let part = |k: usize| k as f64 / parts[axis] as f64;
+                net.restrict(axis, part(at[axis]), part(at[axis] + 1));
+            }
+        }
+        cell(&net, self.origin, over)
+    }
+}
+
+impl Patch {
+    /// What the uncertainty of the third derivatives over the whole patch adds to the bound of a facet as large as the patch.
+    pub fn slack(&self) -> f64 {
+        let cell = cell(&self.net, self.origin, self.span);
+        // A facet is measured from one of its corners, which lies within the patch.
+        let extent = self.net.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length() / p.w));
+        let [uuu, uuv, uvv, vvv] = cell.third.map(|ball| ball.radius + extent * ball.weight_radius);
+        let DVec2 { x, y } = self.span.size();
+        (uuu * x * x * x + 3.0 * uuv * x * x * y + 3.0 * uvv * x * y * y + vvv * y * y * y)
+            / (16.0 * cell.least_weight)
+    }
+}
+
+fn middle(patch: &BezierPatch) -> DVec3 {
+    patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64
+}
+
+fn cell(net: &Net, origin: DVec3, over: UvBox) -> Cell {
+    let size = over.size();
+    let mut nets = Nets::new(net);
+    let (u, v) = ((0, size.x), (1, size.y));
+    let (du, dv) = (nets.derivative(Nets::WHOLE, net.degree, u), nets.derivative(Nets::WHOLE, net.degree, v));
+    let (duu, duv, dvv) = (nets.of(du, u), nets.of(du, v), nets.of(dv, v));
+    let third = [nets.of(duu, u), nets.of(duu, v), nets.of(duv, v), nets.of(dvv, v)];
+    let least_weight = net.points.iter().fold(f64::INFINITY, |m, p| m.min(p.w));
+    let extent = net.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length() / p.w.abs()));
+    let rate = |d| (nets.norm(d) + extent * nets.weight_norm(d)) / least_weight;
+    let (s_u, s_v) = (rate(du), rate(dv));
+    let (w_u, w_v) = (nets.weight_norm(du), nets.weight_norm(dv));
+    // A_uu = S_uu w + 2 S_u w_u + S w_uu, and so on.
+    let norm = |d, mixed: f64| (nets.norm(d) + mixed + extent * nets.weight_norm(d)) / least_weight;
+    Cell {
+        origin,
+        center: over.center(),
+        second: [nets.middle(duu), nets.middle(duv), nets.middle(dvv)],
+        third: third.map(|d| nets.ball(d)),
+        least_weight,
+        weight_rate: DVec2::new(w_u, w_v),
+        norms: [norm(duu, 2.0 * s_u * w_u), norm(duv, s_u * w_v + s_v * w_u), norm(dvv, 2.0 * s_v * w_v)],
+    }
+}
+
+/// The derivatives of a net, one after the other in one list.
+struct Nets<'a> {
+    whole: &'a [DVec4],
+    points: Vec<DVec4>,
+}
+
+/// A derivative: where its net begins in the list, and its degrees.
+#[derive(Clone, Copy)]
+struct Derivative {
+    start: usize,
+    degree: [usize; 2],
+}
+
+impl<'a> Nets<'a> {
+    /// Stands for the net itself.
+    const WHOLE: usize = usize::MAX;
+
+    fn new(net: &'a Net) -> Self {
+        // Two first, three second and four third derivatives, none larger than the net.
+        Self { whole: &net.points, points: Vec::with_capacity(9 * net.points.len()) }
+    }
+
+    fn of(&mut self, from: Derivative, along: (usize, f64)) -> Derivative {
+        self.derivative(from.start, from.degree, along)
+    }
+
+    /// The net of the derivative along an axis, over a box of this length in that direction.
+    fn derivative(
+        &mut self,
+        from: usize,
+        from_degree: [usize; 2],
+        (axis, length): (usize, f64),
+    ) -> Derivative {
+        let start = self.points.len();
+        if from_degree[axis] == 0 {
+            self.points.push(DVec4::ZERO);
+            return Derivative { start, degree: [0, 0] };
+        }
+        let mut degree = from_degree;
         degree[axis] -= 1;
-        let factor = self.degree[axis] as f64 / length;
-        let columns = self.degree[1] + 1;
+        let factor = from_degree[axis] as f64 / length;
+        let columns = from_degree[1] + 1;
         let step = if axis == 0 { columns } else { 1 };
-        let mut points = Vec::with_capacity((degree[0] + 1) * (degree[1] + 1));
         for i in 0..=degree[0] {
             for j in 0..=degree[1] {
                 let k = i * columns + j;
-                points.push((self.points[k + step] - self.points[k]) * factor);
+                let (a, b) = if from == Self::WHOLE {
+                    (self.whole[k], self.whole[k + step])
+                } else {
+                    (self.points[from + k], self.points[from + k + step])
+                };
+                self.points.push((b - a) * factor);
             }
         }
-        Net { degree, points }
+        Derivative { start, degree }
+    }
+
+    fn points(&self, d: Derivative) -> &[DVec4] {
+        &self.points[d.start..d.start + (d.degree[0] + 1) * (d.degree[1] + 1)]
     }
 
     /// The value in the middle of the box.
-    fn middle(&self) -> DVec4 {
-        let [m, n] = self.degree;
+    fn middle(&self, d: Derivative) -> DVec4 {
+        let [m, n] = d.degree;
+        let points = self.points(d);
         let mut sum = DVec4::ZERO;
         let mut scale_u = 0.5f64.powi(m as i32 + n as i32);
         for i in 0..=m {
             let mut scale = scale_u;
             for j in 0..=n {
-                sum += self.points[i * (n + 1) + j] * scale;
+                sum += points[i * (n + 1) + j] * scale;
                 scale *= (n - j) as f64 / (j + 1) as f64;
             }
             scale_u *= (m - i) as f64 / (i + 1) as f64;
@@ -86,79 +245,23 @@ impl Net {
         sum
     }
 
-    fn ball(&self) -> Ball4 {
-        let center = self.middle();
+    fn ball(&self, d: Derivative) -> Ball4 {
+        let center = self.middle(d);
         let (mut radius, mut weight_radius) = (0.0f64, 0.0f64);
-        for p in &self.points {
-            let d = *p - center;
-            radius = radius.max(d.truncate().length_squared());
-            weight_radius = weight_radius.max(d.w.abs());
+        for p in self.points(d) {
+            let off = *p - center;
+            radius = radius.max(off.truncate().length_squared());
+            weight_radius = weight_radius.max(off.w.abs());
         }
         Ball4 { center, radius: radius.sqrt(), weight_radius }
     }
 
-    fn norm(&self) -> f64 {
-        self.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length_squared())).sqrt()
+    fn norm(&self, d: Derivative) -> f64 {
+        self.points(d).iter().fold(0.0f64, |m, p| m.max(p.truncate().length_squared())).sqrt()
     }
 
-    fn weight_norm(&self) -> f64 {
-        self.points.iter().fold(0.0f64, |m, p| m.max(p.w.abs()))
-    }
-}
-
-/// Cell `at` of the patch over `span` cut into `parts` in u and v.
-pub(super) fn cell_of(patch: &BezierPatch, span: UvBox, at: [usize; 2], parts: [usize; 2]) -> Cell {
-    let size = span.size() / DVec2::new(parts[0] as f64, parts[1] as f64);
-    let middle = patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64;
-    let mut net = Net::new(patch, middle);
-    for axis in 0..2 {
-        if parts[axis] > 1 {
-            let part = |k: usize| k as f64 / parts[axis] as f64;
-            net.restrict(axis, part(at[axis]), part(at[axis] + 1));
-        }
-    }
-    let corner = span.min + DVec2::new(at[0] as f64, at[1] as f64) * size;
-    cell(&net, middle, UvBox::new(corner, corner + size))
-}
-
-/// What the uncertainty of the third derivatives over a whole patch adds to the bound of a facet as large as the patch.
-pub(super) fn slack(patch: &BezierPatch, span: UvBox) -> f64 {
-    let middle = patch.points.iter().copied().sum::<DVec3>() / patch.points.len() as f64;
-    let size = span.size();
-    let cell = cell(&Net::new(patch, middle), middle, span);
-    // A facet is measured from one of its corners, which lies within the patch.
-    let extent = patch.points.iter().fold(0.0f64, |m, p| m.max(p.distance(middle)));
-    let [uuu, uuv, uvv, vvv] = cell.third.map(|ball| ball.radius + extent * ball.weight_radius);
-    let DVec2 { x, y } = size;
-    (uuu * x * x * x + 3.0 * uuv * x * x * y + 3.0 * uvv * x * y * y + vvv * y * y * y)
-        / (16.0 * cell.least_weight)
-}
-
-fn cell(net: &Net, origin: DVec3, over: UvBox) -> Cell {
-    let size = over.size();
-    let (du, dv) = (net.derivative(0, size.x), net.derivative(1, size.y));
-    let (duu, duv, dvv) = (du.derivative(0, size.x), du.derivative(1, size.y), dv.derivative(1, size.y));
-    let third = [
-        duu.derivative(0, size.x),
-        duu.derivative(1, size.y),
-        duv.derivative(1, size.y),
-        dvv.derivative(1, size.y),
-    ];
-    let least_weight = net.points.iter().fold(f64::INFINITY, |m, p| m.min(p.w));
-    let extent = net.points.iter().fold(0.0f64, |m, p| m.max(p.truncate().length() / p.w.abs()));
-    let rate = |d: &Net| (d.norm() + extent * d.weight_norm()) / least_weight;
-    let (s_u, s_v) = (rate(&du), rate(&dv));
-    let (w_u, w_v) = (du.weight_norm(), dv.weight_norm());
-    // A_uu = S_uu w + 2 S_u w_u + S w_uu, and so on.
-    let norm = |d: &Net, mixed: f64| (d.norm() + mixed + extent * d.weight_norm()) / least_weight;
-    Cell {
-        origin,
-        center: over.center(),
-        second: [duu.middle(), duv.middle(), dvv.middle()],
-        third: third.map(|net| net.ball()),
-        least_weight,
-        weight_rate: DVec2::new(w_u, w_v),
-        norms: [norm(&duu, 2.0 * s_u * w_u), norm(&duv, s_u * w_v + s_v * w_u), norm(&dvv, 2.0 * s_v * w_v)],
+    fn weight_norm(&self, d: Derivative) -> f64 {
+        self.points(d).iter().fold(0.0f64, |m, p| m.max(p.w.abs()))
     }
 }
 

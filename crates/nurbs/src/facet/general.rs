@@ -14,77 +14,15 @@
 //! of S against the facet times the shift; where the slope is large the error is √(N² + τ²). At a boundary edge the face ends
 //! at its curve: the lens between it and the image of the chord lies as near to the edge as the farther of the two.
 
-use super::{Facet, FacetBound, lattice};
+use super::closer::{Closer, Errors, FINEST};
+use super::form::{Cubic, Form};
+use super::{Facet, FacetBound, lattice_point};
 use crate::{Piece, SurfaceBounds, UvBox};
 use glam::{DVec2, DVec3};
 
-/// Second derivatives of g = w·(A − a w) over the pieces: the middle of the enclosure and how far it reaches, for uu, uv, vv.
-#[derive(Clone, Copy)]
-struct Form {
-    middle: [f64; 3],
-    reach: [f64; 3],
-}
-
-impl Form {
-    /// Of w·(S − anchor), times the weight.
-    fn new(pieces: &[Piece], w: DVec3, anchor: DVec3) -> Self {
-        Self::enclosing(pieces.iter().map(|piece| piece.along(w, anchor)))
-    }
-
-    /// Of the weight.
-    fn weight(pieces: &[Piece]) -> Self {
-        Self::enclosing(pieces.iter().map(Piece::weight))
-    }
-
-    fn enclosing(forms: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Self {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for (value, reach) in forms {
-            for i in 0..3 {
-                low[i] = low[i].min(value[i] - reach[i]);
-                high[i] = high[i].max(value[i] + reach[i]);
-            }
-        }
-        Self {
-            middle: std::array::from_fn(|i| 0.5 * (low[i] + high[i])),
-            reach: std::array::from_fn(|i| 0.5 * (high[i] - low[i])),
-        }
-    }
-
-    fn divided(mut self, by: f64) -> Self {
-        for i in 0..3 {
-            self.middle[i] /= by;
-            self.reach[i] /= by;
-        }
-        self
-    }
-
-    fn middle_along(&self, d: DVec2) -> f64 {
-        self.middle[0] * d.x * d.x + 2.0 * self.middle[1] * d.x * d.y + self.middle[2] * d.y * d.y
-    }
-
-    fn reach_along(&self, d: DVec2) -> f64 {
-        self.reach[0] * d.x * d.x + 2.0 * self.reach[1] * (d.x * d.y).abs() + self.reach[2] * d.y * d.y
-    }
-}
-
-/// The largest |½ Σ_{i<j} λ_i λ_j h_ij| over the triangle: on an edge, or at the critical point inside.
-fn largest_quadratic(h: [f64; 3]) -> f64 {
-    // h[i] belongs to the edge opposite corner i.
-    let [c, b, a] = h;
-    let on_edges = a.abs().max(b.abs()).max(c.abs()) / 8.0;
-    let weights = [c * (a + b - c), b * (a + c - b), a * (b + c - a)];
-    let inside = weights.iter().all(|&w| w > 0.0) || weights.iter().all(|&w| w < 0.0);
-    let sum = weights[0] + weights[1] + weights[2];
-    if inside && sum != 0.0 { on_edges.max((a * b * c / (2.0 * sum)).abs()) } else { on_edges }
-}
-
-/// The finest lattice on which the error is evaluated.
-const MAX_PARTS: usize = 16;
-
 /// What all stages of one bound share.
-struct Frame3 {
-    n: DVec3,
+pub(super) struct Frame3 {
+    pub n: DVec3,
     /// In-plane normals of the edges, pointing outwards.
     m: [DVec3; 3],
     d: [DVec2; 3],
@@ -92,12 +30,14 @@ struct Frame3 {
     height: [f64; 3],
     area2: f64,
     size: DVec2,
+    least_weight: f64,
     /// What jumps of the first derivative cost, at most.
     kinks: f64,
     kink: DVec2,
 }
 
 /// Bounds along the normal and sideways, of the facet and its edges.
+#[derive(Clone, Copy)]
 struct Parts {
     along: f64,
     along_edges: [f64; 3],
@@ -125,6 +65,8 @@ pub(super) fn bound(
     }
     let size = uv_box.size();
     let length = sides.map(DVec3::length);
+    // g is as large as the weight times the error: it is divided by the least weight.
+    let least_weight = pieces.iter().fold(f64::INFINITY, |m, p| m.min(p.least_weight));
     let frame = Frame3 {
         n,
         m: std::array::from_fn(|i| sides[i].cross(n) / length[i]),
@@ -133,22 +75,24 @@ pub(super) fn bound(
         height: length.map(|l| cross.length() / l),
         area2: cross.length(),
         size,
+        least_weight,
         // A jump J of the first derivative somewhere inside costs interpolation at most J·R/4.
         kinks: 0.25 * (kink.x * size.x + kink.y * size.y),
         kink,
     };
-    // g is as large as the weight times the error: it is divided by the least weight.
-    let least_weight = pieces.iter().fold(f64::INFINITY, |m, p| m.min(p.least_weight));
-    let form = |w: DVec3, anchor: DVec3| Form::new(pieces, w, anchor).divided(least_weight);
+    let centroid = (uv[0] + uv[1] + uv[2]) / 3.0;
+    let form = |w: DVec3, anchor: DVec3| {
+        Modelled::new(Form::new(pieces, centroid, w, anchor).divided(least_weight), &frame)
+    };
     let normal = form(n, facet.xyz[0]);
-    let h = frame.d.map(|d| normal.middle_along(d));
     let rate = pieces.iter().fold(DVec2::ZERO, |m, p| m.max(p.weight_rate)) / least_weight;
-    let slope = slope(&normal, &frame, &h) + weight_slope(&frame, rate, enough);
-    let sideways: [Form; 3] = std::array::from_fn(|i| form(frame.m[i], facet.xyz[(i + 1) % 3]));
-    let quick = quick_parts(&frame, &normal, &h, &sideways);
+    let slope = slope(&normal, &frame) + weight_slope(&frame, rate, enough);
+    let sideways: [Modelled; 3] = std::array::from_fn(|i| form(frame.m[i], facet.xyz[(i + 1) % 3]));
+    let quick = quick_parts(&frame, &normal, &sideways);
     let bound = combine(facet, &quick, slope);
     // Where even the least that the enclosures allow on an edge is too much, looking closer is in vain.
-    let least: [f64; 3] = std::array::from_fn(|i| (h[i].abs() - normal.reach_along(frame.d[i])) / 8.0);
+    let least: [f64; 3] =
+        std::array::from_fn(|i| normal.cubic.mid_edge(i) - normal.form.reach_along(frame.d[i]) / 8.0);
     if bound.error <= enough {
         return bound;
     }
@@ -156,41 +100,68 @@ pub(super) fn bound(
         // Of the other edges this much is certain; their upper bounds are not worth knowing.
         return FacetBound { edges: least, ..bound };
     }
-    let mut best = bound;
-    let mut parts = 4;
+    let weight = Modelled::new(Form::weight(pieces, centroid).divided(least_weight), &frame);
+    let (mut best, mut seen, mut parts) = (bound, Seen::default(), 4);
     loop {
-        let weights = weight_bend(&Form::weight(pieces), &frame, parts) / least_weight;
-        let (mut closer, seen) = sampled_parts(bounds, facet, &frame, &normal, &sideways, parts);
-        closer.grow(1.0 + weights);
-        let bound = combine(facet, &closer, slope);
+        seen.look(bounds, facet, &frame, &normal.cubic, parts);
+        // The weight strays by this share from linear between the points of the lattice.
+        let weights = weight.between(&frame, parts);
+        let found = seen.parts(&frame, &normal, &sideways, weights);
+        let bound = combine(facet, &found, slope);
         best.error = best.error.min(bound.error);
         best.edges = std::array::from_fn(|i| best.edges[i].min(bound.edges[i]));
         // What lies between the samples shrinks with the square of their number: stop where even the finest lattice is too coarse.
-        let (margin, room) = (bound.error - seen, enough - seen);
-        if best.error <= enough || room <= 0.0 || parts >= MAX_PARTS {
-            return best;
-        }
+        let (margin, room) = (bound.error - seen.along, enough - seen.along);
         let needed = parts as f64 * (margin / room).sqrt();
-        if needed > 1.5 * MAX_PARTS as f64 {
+        if best.error <= enough || room <= 0.0 || parts >= FINEST || needed > 1.5 * FINEST as f64 {
             return best;
         }
-        parts = if needed <= 8.0 && parts < 8 { 8 } else { MAX_PARTS };
+        if parts < 8 && needed <= 8.0 {
+            parts = 8;
+            continue;
+        }
+        // How small the error along the normal must be, with what is known of the shifts sideways.
+        let target = allowed_along(&found, slope, enough);
+        if target > seen.along + normal.between(&frame, FINEST) {
+            let (normal, weight, errors) = (&normal, &weight, &mut seen.errors);
+            let mut closer = Closer { bounds, facet, frame: &frame, normal, weight, errors };
+            return closer_bound(&mut closer, &found, slope, best, parts, target, enough);
+        }
+        // The shifts are too large, or not known well enough.
+        parts = FINEST;
     }
 }
 
-impl Parts {
-    fn grow(&mut self, factor: f64) {
-        self.along *= factor;
-        for values in [&mut self.along_edges, &mut self.sideways, &mut self.bends] {
-            values.iter_mut().for_each(|v| *v *= factor);
+/// The largest error along the normal with which a facet whose image shifts so far sideways passes.
+fn allowed_along(parts: &Parts, slope: f64, enough: f64) -> f64 {
+    parts.sideways.iter().fold(enough, |least, &shift| {
+        let leaning = if slope < 0.5 { enough - 2.0 * slope * shift } else { 0.0 };
+        least.min(leaning.max((enough * enough - shift * shift).max(0.0).sqrt()))
+    })
+}
+
+/// Looks closer where the lattice showed errors near the target; improves on `best` where that succeeds.
+fn closer_bound(
+    closer: &mut Closer<'_, '_>,
+    found: &Parts,
+    slope: f64,
+    mut best: FacetBound,
+    parts: usize,
+    target: f64,
+    enough: f64,
+) -> FacetBound {
+    let mut edges = found.along_edges;
+    for i in 0..3 {
+        if closer.facet.sag[i].is_some() {
+            let allowed = (enough * enough - found.bends[i] * found.bends[i]).max(0.0).sqrt();
+            edges[i] = closer.edge_bound(i, parts, allowed).unwrap_or(f64::INFINITY).min(edges[i]);
         }
     }
-}
-
-/// How far the weight strays from linear between the points of a lattice: a value between samples may be larger by that share.
-fn weight_bend(weight: &Form, frame: &Frame3, parts: usize) -> f64 {
-    let worst = frame.d.iter().fold(0.0f64, |m, &d| m.max(weight.middle_along(d).abs()));
-    (worst / 6.0 + weight.reach_along(frame.size) / 8.0) / (parts * parts) as f64
+    let along = closer.bound(parts, target).unwrap_or(f64::INFINITY).min(found.along);
+    let bound = combine(closer.facet, &Parts { along, along_edges: edges, ..*found }, slope);
+    best.error = best.error.min(bound.error);
+    best.edges = std::array::from_fn(|i| best.edges[i].min(bound.edges[i]));
+    best
 }
 
 /// What a changing weight adds to the slope of (g/w): at most |g/w|·|w'|/w per length.
@@ -207,67 +178,145 @@ fn weight_slope(frame: &Frame3, rate: DVec2, error: f64) -> f64 {
 }
 
 /// From the second derivatives alone.
-fn quick_parts(frame: &Frame3, normal: &Form, h: &[f64; 3], forms: &[Form; 3]) -> Parts {
-    let d = &frame.d;
-    let along = largest_quadratic(*h) + normal.reach_along(frame.size) / 8.0 + frame.kinks;
-    let along_edges = std::array::from_fn(|i| (h[i].abs() + normal.reach_along(d[i])) / 8.0 + frame.kinks);
-    let bends: [f64; 3] = std::array::from_fn(|i| {
-        (forms[i].middle_along(d[i]).abs() + forms[i].reach_along(d[i])) / 8.0 + frame.kinks
-    });
-    let sideways = std::array::from_fn(|i| {
-        let t = d.map(|d| forms[i].middle_along(d));
-        // Inside T the other two edges' terms are outweighed by the distance from this edge, unless T is very flat.
-        let others =
-            0.5 * (t[(i + 1) % 3].abs() + t[(i + 2) % 3].abs()) + 0.5 * forms[i].reach_along(frame.size);
-        bends[i] + (others - frame.height[i]).max(0.0)
-    });
-    Parts { along, along_edges, sideways, bends }
+fn quick_parts(frame: &Frame3, normal: &Modelled, sideways: &[Modelled; 3]) -> Parts {
+    let on_edge =
+        |f: &Modelled, i: usize| f.cubic.on_edge(i) + f.form.reach_along(frame.d[i]) / 8.0 + frame.kinks;
+    let bends: [f64; 3] = std::array::from_fn(|i| on_edge(&sideways[i], i));
+    Parts {
+        along: normal.cubic.largest() + normal.form.reach_along(frame.size) / 8.0 + frame.kinks,
+        along_edges: std::array::from_fn(|i| on_edge(normal, i)),
+        sideways: std::array::from_fn(|i| {
+            let Modelled { form, cubic } = &sideways[i];
+            // Inside T the other two edges' terms are outweighed by the distance from this edge, unless T is very flat: of the
+            // cubic's terms those with λ_i weigh 1 − (1 − λ_i)³ ≤ 3 λ_i.
+            let others = 0.5 * (cubic.h[(i + 1) % 3].abs() + cubic.h[(i + 2) % 3].abs())
+                + 3.0 * cubic.cubic_part()
+                + 0.5 * form.reach_along(frame.size);
+            bends[i] + (others - frame.height[i]).max(0.0)
+        }),
+        bends,
+    }
 }
 
-/// With the error evaluated on a lattice; also returns the largest value seen along the normal.
-fn sampled_parts(
-    bounds: &SurfaceBounds<'_>,
-    facet: &Facet,
-    frame: &Frame3,
-    normal: &Form,
-    forms: &[Form; 3],
+/// Second derivatives in one direction and the interpolation error that they make.
+pub(super) struct Modelled {
+    form: Form,
+    cubic: Cubic,
+}
+
+impl Modelled {
+    fn new(form: Form, frame: &Frame3) -> Self {
+        Self { cubic: form.error(&frame.d), form }
+    }
+
+    /// What lies between the points of a lattice, at most.
+    pub fn between(&self, frame: &Frame3, parts: usize) -> f64 {
+        let scale = 1.0 / (parts * parts) as f64;
+        (self.cubic.largest_between(parts) + self.form.reach_along(frame.size) / 8.0) * scale
+            + frame.kinks / parts as f64
+    }
+
+    /// What a lattice does not show of the difference from the model, along `d`.
+    fn remainder(&self, d: DVec2, frame: &Frame3, parts: usize) -> f64 {
+        let parts = parts as f64;
+        self.form.reach_along(d) / (8.0 * parts * parts) + frame.kinks / parts
+    }
+
+    /// The same on edge `i`.
+    pub fn between_on_edge(&self, frame: &Frame3, i: usize, parts: usize) -> f64 {
+        let parts = parts as f64;
+        (self.cubic.steepest(i) + self.form.reach_along(frame.d[i])) / (8.0 * parts * parts)
+            + frame.kinks / parts
+    }
+}
+
+/// What evaluation at the points of a lattice has shown, at most.
+#[derive(Default)]
+struct Seen {
+    /// The lattice seen so far divides edges in so many parts.
     parts: usize,
-) -> (Parts, f64) {
-    let scale = 1.0 / (parts * parts) as f64;
-    let between = |form: &Form| {
-        let worst = frame.d.iter().fold(0.0f64, |m, &d| m.max(form.middle_along(d).abs()));
-        (worst / 6.0 + form.reach_along(frame.size) / 8.0) * scale + frame.kinks / parts as f64
-    };
-    let mut seen = 0.0f64;
-    let mut edges = [0.0f64; 3];
-    let (mut sideways, mut bends) = ([0.0f64; 3], [0.0f64; 3]);
-    for w in lattice(parts) {
-        let blend = |p: [DVec3; 3]| p[0] * w[0] + p[1] * w[1] + p[2] * w[2];
-        let uv = facet.uv[0] * w[0] + facet.uv[1] * w[1] + facet.uv[2] * w[2];
-        let e = bounds.point(uv) - blend(facet.xyz);
-        let along = e.dot(frame.n).abs();
-        seen = seen.max(along);
-        for i in 0..3 {
-            let out = e.dot(frame.m[i]);
-            sideways[i] = sideways[i].max(out - frame.height[i] * w[i]);
-            if w[i] == 0.0 {
-                edges[i] = edges[i].max(along);
-                bends[i] = bends[i].max(out.abs());
+    along: f64,
+    along_edges: [f64; 3],
+    /// How far w·(S − a)·n is from its model.
+    off: f64,
+    off_edges: [f64; 3],
+    sideways: [f64; 3],
+    bends: [f64; 3],
+    errors: Errors,
+}
+
+impl Seen {
+    /// Looks at the points of a lattice that were not seen before.
+    fn look(
+        &mut self,
+        bounds: &SurfaceBounds<'_>,
+        facet: &Facet,
+        frame: &Frame3,
+        model: &Cubic,
+        parts: usize,
+    ) {
+        let known = parts.checked_div(self.parts).unwrap_or(parts);
+        for i in 0..=parts {
+            for j in 0..=parts - i {
+                if !(i.is_multiple_of(known) && j.is_multiple_of(known)) {
+                    let along = self.look_at(bounds, facet, frame, model, lattice_point(i, j, parts));
+                    self.errors.set(i * FINEST / parts, j * FINEST / parts, along);
+                }
             }
         }
+        self.parts = parts;
     }
-    let between_on_edge = |form: &Form, i: usize| {
-        (form.middle_along(frame.d[i]).abs() + form.reach_along(frame.d[i])) / 8.0 * scale
-            + frame.kinks / parts as f64
-    };
-    let bends = std::array::from_fn(|i| bends[i] + between_on_edge(&forms[i], i));
-    let parts = Parts {
-        along: seen + between(normal),
-        along_edges: std::array::from_fn(|i| edges[i] + between_on_edge(normal, i)),
-        sideways: std::array::from_fn(|i| (sideways[i] + between(&forms[i])).max(bends[i])),
-        bends,
-    };
-    (parts, seen)
+
+    /// Returns the error along the normal.
+    fn look_at(
+        &mut self,
+        bounds: &SurfaceBounds<'_>,
+        facet: &Facet,
+        frame: &Frame3,
+        model: &Cubic,
+        w: [f64; 3],
+    ) -> f64 {
+        let blend = |p: [DVec3; 3]| p[0] * w[0] + p[1] * w[1] + p[2] * w[2];
+        let uv = facet.uv[0] * w[0] + facet.uv[1] * w[1] + facet.uv[2] * w[2];
+        let (p, weight) = bounds.weighted_point(uv);
+        let e = p - blend(facet.xyz);
+        let along = e.dot(frame.n);
+        let off = (along * (weight / frame.least_weight) - model.at(w)).abs();
+        self.along = self.along.max(along.abs());
+        self.off = self.off.max(off);
+        for i in 0..3 {
+            let out = e.dot(frame.m[i]);
+            self.sideways[i] = self.sideways[i].max(out - frame.height[i] * w[i]);
+            if w[i] == 0.0 {
+                self.along_edges[i] = self.along_edges[i].max(along.abs());
+                self.off_edges[i] = self.off_edges[i].max(off);
+                self.bends[i] = self.bends[i].max(out.abs());
+            }
+        }
+        along.abs()
+    }
+
+    /// Bounds from what was seen and what lies between; `weights` is the share by which values between samples may be larger
+    /// because the weight changes.
+    fn parts(&self, frame: &Frame3, normal: &Modelled, forms: &[Modelled; 3], weights: f64) -> Parts {
+        let grow = 1.0 + weights;
+        let bends =
+            std::array::from_fn(|i| (self.bends[i] + forms[i].between_on_edge(frame, i, self.parts)) * grow);
+        let direct = (self.along + normal.between(frame, self.parts)) * grow;
+        let modelled = normal.cubic.largest() + self.off + normal.remainder(frame.size, frame, self.parts);
+        Parts {
+            along: direct.min(modelled),
+            along_edges: std::array::from_fn(|i| {
+                let direct = (self.along_edges[i] + normal.between_on_edge(frame, i, self.parts)) * grow;
+                let off = self.off_edges[i] + normal.remainder(frame.d[i], frame, self.parts);
+                direct.min(normal.cubic.on_edge(i) + off)
+            }),
+            sideways: std::array::from_fn(|i| {
+                ((self.sideways[i] + forms[i].between(frame, self.parts)) * grow).max(bends[i])
+            }),
+            bends,
+        }
+    }
 }
 
 /// Joins what was bounded along the normal and sideways.
@@ -288,15 +337,18 @@ fn combine(facet: &Facet, parts: &Parts, slope: f64) -> FacetBound {
 }
 
 /// Bounds the slope of S over the facet: f = n·S has a derivative along side ij of at most
-/// ½ max(|h_ij|, |h_jk − h_ik|) plus its deviation; two sides give the gradient.
-fn slope(normal: &Form, frame: &Frame3, h: &[f64; 3]) -> f64 {
+/// ½ max(|h_ij|, |h_jk − h_ik|), six times the largest coefficient of the cubic part (a derivative's coefficients are three times
+/// differences of two), and the remainder's share; two sides give the gradient.
+fn slope(normal: &Modelled, frame: &Frame3) -> f64 {
     let Frame3 { d, length, size, kink, area2, .. } = frame;
+    let (h, reach) = (&normal.cubic.h, &normal.form.reach);
+    let cubic = 6.0 * normal.cubic.cubic_part();
     let along = |i: usize| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        let reach = (normal.reach[0] * size.x + normal.reach[1] * size.y) * d[i].x.abs()
-            + (normal.reach[1] * size.x + normal.reach[2] * size.y) * d[i].y.abs();
+        let reach = (reach[0] * size.x + reach[1] * size.y) * d[i].x.abs()
+            + (reach[1] * size.x + reach[2] * size.y) * d[i].y.abs();
         let jump = kink.x * d[i].x.abs() + kink.y * d[i].y.abs();
-        (0.5 * h[i].abs().max((h[j] - h[k]).abs()) + reach + jump) / length[i]
+        (0.5 * h[i].abs().max((h[j] - h[k]).abs()) + cubic + reach + jump) / length[i]
     };
     (0..3).fold(f64::INFINITY, |best, i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);

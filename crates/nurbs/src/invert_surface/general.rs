@@ -156,13 +156,13 @@ pub(super) fn invert(
     grid: &OnceLock<Grid>,
     p: DVec3,
     near: Option<DVec2>,
-) -> DVec2 {
+) -> Inversion {
     let local = near.map(|n| descend(terrain, p, n));
-    if let Some(found) = local.filter(|found| is_close(terrain, found.uv, found.distance)) {
-        return found.uv;
+    if let Some(found) = local.filter(|found| found.is_close(terrain)) {
+        return found.inversion();
     }
     let grid = grid.get_or_init(|| Grid::new(terrain.surface, uv));
-    let mut best = local.unwrap_or(Inversion { uv: uv.center(), distance: f64::INFINITY });
+    let mut best = local.unwrap_or(Foot { uv: uv.center(), distance: f64::INFINITY, speed: DVec2::ZERO });
     for (height, start) in grid.valleys(p) {
         // On the surface, up to rounding, or lower than this valley can be: nothing is closer.
         if best.distance <= 1e-10 * grid.cell || best.distance < height - grid.cell {
@@ -176,25 +176,49 @@ pub(super) fn invert(
             best = better(best, descend(terrain, p, start));
         }
     }
-    best.uv
+    best.inversion()
+}
+
+/// Where a descent ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    pub uv: DVec2,
+    pub distance: f64,
+    /// The lengths of Su and Sv there.
+    speed: DVec2,
+}
+
+impl Foot {
+    fn inversion(self) -> Inversion {
+        Inversion { uv: self.uv, distance: self.distance }
+    }
+
+    /// True where the distance is so small beside the surface that no other part of it is likely to be meant.
+    fn is_close(&self, terrain: &Terrain<'_>) -> bool {
+        is_close_beside(terrain, self.speed, self.distance)
+    }
 }
 
 /// What was found first stays unless another place is truly closer.
-fn better(first: Inversion, other: Inversion) -> Inversion {
+fn better(first: Foot, other: Foot) -> Foot {
     if other.distance < first.distance * (1.0 - 1e-9) { other } else { first }
 }
 
-/// True where a distance is so small beside the surface that no other part of it is likely to be meant.
+/// As [`Foot::is_close`], of any place.
 pub(super) fn is_close(terrain: &Terrain<'_>, uv: DVec2, distance: f64) -> bool {
     let (_, du, dv) = terrain.surface.jet1(terrain.inside(uv));
+    is_close_beside(terrain, DVec2::new(du.length(), dv.length()), distance)
+}
+
+fn is_close_beside(terrain: &Terrain<'_>, speed: DVec2, distance: f64) -> bool {
     let size = terrain.domain.size();
-    let extent = |d: DVec3, size: f64| if size.is_finite() { d.length() * size } else { f64::INFINITY };
-    let least = extent(du, size.x).min(extent(dv, size.y));
-    distance <= 1e-5 * if least.is_finite() { least } else { du.length().max(dv.length()) }
+    let extent = |speed: f64, size: f64| if size.is_finite() { speed * size } else { f64::INFINITY };
+    let least = extent(speed.x, size.x).min(extent(speed.y, size.y));
+    distance <= 1e-5 * if least.is_finite() { least } else { speed.max_element() }
 }
 
 /// Goes down from `start`, over creases where that leads further down.
-pub(super) fn descend(terrain: &Terrain<'_>, p: DVec3, start: DVec2) -> Inversion {
+pub(super) fn descend(terrain: &Terrain<'_>, p: DVec3, start: DVec2) -> Foot {
     let start = terrain.inside(start);
     let mut cell = terrain.cell(start);
     let mut best = descend_within(terrain, cell, p, start);
@@ -212,7 +236,7 @@ pub(super) fn descend(terrain: &Terrain<'_>, p: DVec3, start: DVec2) -> Inversio
 }
 
 /// Goes down inside a smooth cell.
-fn descend_within(terrain: &Terrain<'_>, open: UvBox, p: DVec3, start: DVec2) -> Inversion {
+fn descend_within(terrain: &Terrain<'_>, open: UvBox, p: DVec3, start: DVec2) -> Foot {
     let mut uv = open.clamp(start);
     let mut jet = terrain.jet(uv);
     let mut height = (jet.p - p).length_squared();
@@ -227,8 +251,8 @@ fn descend_within(terrain: &Terrain<'_>, open: UvBox, p: DVec3, start: DVec2) ->
         let next_height = (next_jet.p - p).length_squared();
         if next_height < height {
             (uv, jet, height) = (next, next_jet, next_height);
-            // After an undamped step this short the next one is all rounding.
-            let short = (step / terrain.domain.size()).abs().max_element() <= 1e-9;
+            // After an undamped step this short the next one, about its square, is all rounding.
+            let short = (step / terrain.domain.size()).abs().max_element() <= 1e-7;
             if full && damping == 0.0 && short {
                 break;
             }
@@ -242,7 +266,8 @@ fn descend_within(terrain: &Terrain<'_>, open: UvBox, p: DVec3, start: DVec2) ->
         }
         damping = if damping == 0.0 { 1e-2 } else { damping * 10.0 };
     }
-    polished(terrain, p, open, Inversion { uv, distance: height.sqrt() }, &jet)
+    let speed = DVec2::new(jet.du.length(), jet.dv.length());
+    polished(terrain, p, open, Foot { uv, distance: height.sqrt(), speed }, &jet)
 }
 
 /// One more Newton step where the point is off the surface: near the foot the distance itself hardly changes, so that
@@ -251,7 +276,7 @@ fn descend_within(terrain: &Terrain<'_>, open: UvBox, p: DVec3, start: DVec2) ->
 // Never inlined: within `descend` the optimiser of rustc 1.95 (vectorisation of straight code, at level 3) returned a
 // wrong v for a point exactly on the surface; the inversion tests show it in release builds.
 #[inline(never)]
-fn polished(terrain: &Terrain<'_>, p: DVec3, open: UvBox, found: Inversion, jet: &SurfaceJet) -> Inversion {
+fn polished(terrain: &Terrain<'_>, p: DVec3, open: UvBox, found: Foot, jet: &SurfaceJet) -> Foot {
     let Some((step, true)) = newton_step(jet, p, 0.0, found.uv, open) else { return found };
     let moved = (jet.du * step.x).length() + (jet.dv * step.y).length();
     if moved > 1e-5 * found.distance {
@@ -259,7 +284,7 @@ fn polished(terrain: &Terrain<'_>, p: DVec3, open: UvBox, found: Inversion, jet:
     }
     let uv = open.clamp(found.uv + step);
     let distance = terrain.point(uv).distance(p);
-    if distance <= found.distance * (1.0 + 1e-13) { Inversion { uv, distance } } else { found }
+    if distance <= found.distance * (1.0 + 1e-13) { Foot { uv, distance, ..found } } else { found }
 }
 
 /// The step, and whether it is a full Newton step, which converges quadratically.

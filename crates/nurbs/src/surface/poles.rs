@@ -2,7 +2,7 @@
 //! normals there.
 
 use crate::curve::CLOSED;
-use crate::{Curve, NurbsSurface, Range, Surface};
+use crate::{Curve, NurbsSurface, Range, Surface, UvBox};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -194,18 +194,12 @@ pub(crate) fn lowest(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
 /// The normal at `p_uv`, or where Su × Sv is lost in rounding its limit from inside the domain.
 pub(super) fn limit_normal(surface: &Surface, p_uv: DVec2) -> Option<DVec3> {
     let domain = surface.domain();
-    let size = domain.size();
-    let size = DVec2::new(
-        if size.x.is_finite() { size.x } else { 1.0 },
-        if size.y.is_finite() { size.y } else { 1.0 },
-    );
+    let size = finite_size(domain);
     let (_, du, dv) = surface.jet1(p_uv);
-    let (a, b) = (du.length() * size.x, dv.length() * size.y);
-    // One derivative is tiny beside the other: the point is on, or all but on, a collapsed line.
-    let regular = a.min(b) > FLAT * a.max(b);
-    if regular && let Some(n) = unit_cross(du, dv) {
+    if let Some(n) = regular_normal(domain, du, dv) {
         return Some(n);
     }
+    let (a, b) = (du.length() * size.x, dv.length() * size.y);
     let inward = |axis: usize| {
         let middle = if domain.is_finite() { domain.center()[axis] } else { p_uv[axis] + 0.5 };
         if p_uv[axis] <= middle { size[axis] } else { -size[axis] }
@@ -225,6 +219,19 @@ pub(super) fn limit_normal(surface: &Surface, p_uv: DVec2) -> Option<DVec3> {
         }
     }
     None
+}
+
+/// The normal by the derivatives, unless one is tiny beside the other: the point is on, or all but on, a collapsed line.
+pub(super) fn regular_normal(domain: UvBox, du: DVec3, dv: DVec3) -> Option<DVec3> {
+    let size = finite_size(domain);
+    let (a, b) = (du.length() * size.x, dv.length() * size.y);
+    if a.min(b) > FLAT * a.max(b) { unit_cross(du, dv) } else { None }
+}
+
+/// The size of a domain, 1 in directions without ends.
+fn finite_size(domain: UvBox) -> DVec2 {
+    let size = domain.size();
+    DVec2::new(if size.x.is_finite() { size.x } else { 1.0 }, if size.y.is_finite() { size.y } else { 1.0 })
 }
 
 fn unit_cross(du: DVec3, dv: DVec3) -> Option<DVec3> {
