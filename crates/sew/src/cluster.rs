@@ -38,6 +38,16 @@ pub(crate) struct Cluster {
 
 /// Merges corners; `apart` lists, per corner, those that it must stay apart from.
 pub(crate) fn cluster(corners: &[Corner], apart: &[Vec<u32>], tolerance: f64) -> Clusters {
+    cluster_pairs(corners, apart, tolerance, &close_pairs(corners, tolerance))
+}
+
+/// Merges the corners of given pairs (distance and both corners) in their order.
+pub(crate) fn cluster_pairs(
+    corners: &[Corner],
+    apart: &[Vec<u32>],
+    tolerance: f64,
+    pairs: &[(f64, u32, u32)],
+) -> Clusters {
     let mut state = State {
         corners,
         apart,
@@ -45,7 +55,7 @@ pub(crate) fn cluster(corners: &[Corner], apart: &[Vec<u32>], tolerance: f64) ->
         parent: (0..corners.len() as u32).collect(),
         members: (0..corners.len() as u32).map(|i| vec![i]).collect(),
     };
-    for (_, a, b) in close_pairs(corners, tolerance) {
+    for &(_, a, b) in pairs {
         state.join(a, b);
     }
     state.finish()

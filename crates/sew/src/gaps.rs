@@ -107,7 +107,7 @@ pub(crate) fn nearest_other(borders: &Borders, border: usize, t: f64) -> Option<
 }
 
 /// The tolerance from sorted gaps.
-fn choose(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64) -> AutoTolerance {
+pub(crate) fn choose(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64) -> AutoTolerance {
     let cap = LARGEST_GAP * diagonal;
     let resolution = uncertainty.filter(|u| *u > 0.0 && u.is_finite()).unwrap_or(RESOLUTION * diagonal);
     let resolution = resolution.min(cap / CLEAR).max(16.0 * f64::EPSILON * diagonal);

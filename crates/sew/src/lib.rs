@@ -13,6 +13,8 @@
 //!   shells ([`shells`])        faces agree which way is out; what closes becomes a solid
 //! ```
 //!
+//! Meshes that come without surfaces are sewn along their polygon borders: [`sew_mesh`].
+//!
 //! Edges that are used twice are never touched. The grid of the 2001 paper (Kahlesz, Balázs and Klein, section 8) is a
 //! tree here, because the sizes of edges in one file differ by many orders of magnitude.
 
@@ -21,6 +23,7 @@ mod cluster;
 mod cut;
 mod foot;
 mod gaps;
+mod mesh;
 mod natural;
 mod orient;
 mod pair;
@@ -32,5 +35,6 @@ mod shells;
 mod tree;
 
 pub use gaps::{AutoTolerance, GapBin, gap_survey};
+pub use mesh::{MeshSewReport, OpenBorder, SewnMesh, sew_mesh};
 pub use report::{OpenEdge, SewReport};
 pub use run::{SewTolerance, has_topology, open_edges, sew_part};

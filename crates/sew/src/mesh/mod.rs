@@ -1,0 +1,132 @@
+//! Sewing of triangle meshes that come without surfaces: section 8 of Kahlesz, Balázs and Klein 2001, NURBS Rendering in
+//! OpenSG Plus.
+//!
+//! ```text
+//!   boundaries ([`boundary`])   border edges in chains; vertices in which chains touch are taken apart
+//!   closest points ([`closest`]) of every border vertex the nearest point of every border within the tolerance
+//!   tracking ([`track`])        proximities followed along both borders, several at once, foldings left out; vertices between
+//!                               two correspondences get theirs by length (the common reparametrisation)
+//!   joining ([`join`])          new vertices split their triangles, corresponding ones move to their middle and are one
+//!   shells ([`shells`])         joined meshes agree which way is out
+//! ```
+//!
+//! Where the paper reparametrises a common border by its whole length, this does so between neighbouring correspondences:
+//! what one border wriggles more than the other does not add up, and no vertex moves by more than the tolerance. A
+//! pair that would break that is left out, and its edges stay open. In place of a grid there is a tree of boxes.
+
+mod boundary;
+mod closest;
+mod join;
+mod shells;
+mod track;
+
+use crate::gaps::{AutoTolerance, choose};
+use crate::run::SewTolerance;
+use boundary::Boundaries;
+use chordal_nurbs::Box3;
+use closest::Approaches;
+use glam::DVec3;
+
+/// The sewn mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SewnMesh {
+    pub positions: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// Per triangle, the given triangle that it is (a part of).
+    pub sources: Vec<u32>,
+    /// Per triangle, its connected shell.
+    pub shells: Vec<u32>,
+}
+
+/// A border that stays open.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OpenBorder {
+    pub edges: usize,
+    pub length: f64,
+    /// Of the middles of its edges, the smallest and the largest distance from another open edge that is no neighbour;
+    /// `None` where there is no other.
+    pub nearest: Option<[f64; 2]>,
+    /// A point of it.
+    pub at: DVec3,
+}
+
+/// What sewing a mesh did; lengths in its own unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshSewReport {
+    pub tolerance: f64,
+    pub auto: Option<AutoTolerance>,
+    /// Edges with a single triangle, and the borders they form.
+    pub open_before: usize,
+    pub borders: usize,
+    /// Stretches along which two borders were sewn.
+    pub sewn: usize,
+    /// Vertices inserted into borders.
+    pub inserted: usize,
+    /// Vertices that were merged into others.
+    pub merged: usize,
+    /// Correspondences that were left out, because a vertex would have moved too far or a triangle vanished.
+    pub refused: usize,
+    pub open_after: usize,
+    /// The longest first.
+    pub open: Vec<OpenBorder>,
+    /// The largest distance that a vertex was moved by.
+    pub largest_move: f64,
+    /// Given triangles with two corners in one place, which are left out.
+    pub degenerate: usize,
+    /// Triangles whose normal was turned by more than a right angle.
+    pub folded: usize,
+    /// Triangles that were turned over to agree with their neighbours.
+    pub turned: usize,
+    /// Edges along which triangles still run the same way, or more than two meet.
+    pub inconsistent: usize,
+    /// Connected shells, and those without an open edge.
+    pub shells: usize,
+    pub closed_shells: usize,
+}
+
+/// Sews the borders of a mesh to each other.
+///
+/// Corners are the same vertex where they have the same index. No vertex moves by more than the tolerance. `unit` is the
+/// finest length that the coordinates can hold (of 32-bit files more than that of the numbers here).
+pub fn sew_mesh(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    tolerance: SewTolerance,
+    resolution: Option<f64>,
+) -> (SewnMesh, MeshSewReport) {
+    let mut report = MeshSewReport::default();
+    let boundaries = Boundaries::new(positions, triangles);
+    report.degenerate = boundaries.degenerate;
+    report.open_before = boundaries.edges();
+    report.borders = boundaries.all.len();
+    report.auto = match tolerance {
+        SewTolerance::Auto => survey(&boundaries, resolution),
+        SewTolerance::Length(_) => None,
+    };
+    report.tolerance = match tolerance {
+        SewTolerance::Length(length) => length,
+        SewTolerance::Auto => report.auto.as_ref().map_or(0.0, |a| a.tolerance),
+    };
+    let usable = report.tolerance > 0.0 && report.tolerance.is_finite();
+    let joints = if usable {
+        let approaches = Approaches::new(&boundaries, report.tolerance);
+        track::joints(&boundaries, &approaches, report.tolerance)
+    } else {
+        track::Joints::default()
+    };
+    report.sewn = joints.stretches;
+    let joined = join::join(&boundaries, &joints, report.tolerance, &mut report);
+    let mesh = shells::finish(joined, &mut report);
+    (mesh, report)
+}
+
+/// How far the borders of a mesh are from each other.
+fn survey(boundaries: &Boundaries, resolution: Option<f64>) -> Option<AutoTolerance> {
+    let box3 = Box3::from_points(boundaries.positions.iter().copied());
+    let mut gaps = closest::nearest_gaps(boundaries);
+    if gaps.is_empty() {
+        return None;
+    }
+    gaps.sort_unstable_by(f64::total_cmp);
+    Some(choose(&gaps, resolution, box3.diagonal()))
+}
