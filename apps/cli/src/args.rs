@@ -23,6 +23,8 @@ pub enum Command {
     Mesh(MeshArgs),
     /// Say what is in a CAD file: tree, units, faces by kind, gaps, loose items, warnings.
     Info(InfoArgs),
+    /// Sew the borders of a triangle mesh to each other: STL, PLY, OBJ, GLB or 3MF in and out.
+    Sew(SewArgs),
     /// Check a mesh file: closed, oriented, without degenerate and duplicate triangles; with --against, its measured
     /// distance from a CAD file.
     Check(CheckArgs),
@@ -222,6 +224,33 @@ pub struct InfoArgs {
     /// A CAD file.
     #[arg(value_name = "IN")]
     pub input: PathBuf,
+    /// Print JSON instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct SewArgs {
+    /// A mesh file: STL, PLY, OBJ, GLB or 3MF.
+    #[arg(value_name = "MESH")]
+    pub mesh: PathBuf,
+    /// The mesh file to write; every connected shell becomes an object of its own.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Borders this near are sewn: a length (a bare number is in mm), or `auto`, by the resolution of the coordinates and the
+    /// histogram of the gaps. No vertex moves further.
+    #[arg(long, value_name = "LENGTH", default_value = "auto", allow_hyphen_values = true)]
+    pub tolerance: Sew,
+    /// Write so many coarser meshes as well, each with half the triangles of the one before, to OUT.level1, … (needs a
+    /// build with the feature `levels`).
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub levels: usize,
+    /// The unit of the mesh's coordinates [default: what the file says, else mm].
+    #[arg(long)]
+    pub unit: Option<Unit>,
+    /// The format of the output [default: by the extension of OUT].
+    #[arg(long, value_enum)]
+    pub format: Option<FormatArg>,
     /// Print JSON instead of text.
     #[arg(long)]
     pub json: bool,

@@ -10,6 +10,7 @@ mod info;
 mod mesh;
 mod outputs;
 mod progress;
+mod sew;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -39,6 +40,7 @@ fn run() -> Exit {
     match cli.command {
         Command::Mesh(args) => mesh::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Sew(args) => sew::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Bench(args) => bench::run(&args),

@@ -116,6 +116,14 @@ impl Border {
         Some(Self { edge: id, of, curve, range: edge.range, ends, t, points, stray, length })
     }
 
+    /// Parameters of a polyline of any edge, ends included, at least so many steps.
+    pub fn parameters(curve: &Curve, range: Range, least: usize) -> Vec<f64> {
+        if matches!(curve, Curve::Line { .. }) {
+            return (0..=least).map(|i| range.start + range.length() * i as f64 / least as f64).collect();
+        }
+        nodes(curve, range, least)
+    }
+
     pub fn is_straight(&self) -> bool {
         matches!(*self.curve, Curve::Line { .. })
     }

@@ -21,6 +21,7 @@
 mod border;
 mod cluster;
 mod cut;
+mod flux;
 mod foot;
 mod gaps;
 mod mesh;

@@ -199,6 +199,7 @@ impl Sewing<'_> {
         };
         let Rebuilt { part: mut sewn, mut links } = rebuild(self.part, &decisions);
         links.extend(self.old_links());
+        let given = self.part;
         let flipped: Vec<bool> = sewn.faces.iter().map(|f| f.flipped).collect();
         let mut has_border = vec![false; sewn.faces.len()];
         self.borders.all.iter().for_each(|b| has_border[b.of.face as usize] = true);
@@ -223,7 +224,7 @@ impl Sewing<'_> {
             open: still_open(&sewn),
             largest_move: moves.iter().copied().fold(0.0, f64::max),
             face_moves: moves,
-            turned: oriented.turn.iter().filter(|&&t| t).count(),
+            turned: given.faces.iter().zip(&sewn.faces).filter(|(a, b)| a.flipped != b.flipped).count(),
             contradictions: oriented.contradictions,
             shells: shells.shells,
             closed_shells: shells.closed,

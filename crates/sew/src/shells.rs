@@ -1,9 +1,10 @@
 //! Connected shells of the faces that were sewn, and the bodies they make: what closes is a solid.
 
+use crate::flux::{volume, winding};
 use crate::orient::Oriented;
 use crate::rebuild::Link;
 use chordal_brep::{Body, BodyKind, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source};
-use chordal_nurbs::Surface;
+use chordal_nurbs::{Box3, DVec3, Surface};
 
 /// What became of the shells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,7 +70,38 @@ pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, l
         add_bodies(part, group[0].0 as usize, &shells);
     }
     part.bodies.retain(|b| !b.shells.is_empty());
+    turn_outward(part, first_new);
     found
+}
+
+/// A volume smaller than this share of what it is the sum of is lost in the quadrature: the mesh will tell.
+const SURE: f64 = 1e-3;
+
+/// Turns over the new closed shells whose volume has the wrong sign: that of an outer one is positive, a void's negative.
+fn turn_outward(part: &mut Part, first_new: usize) {
+    let mut wrong: Vec<FaceId> = Vec::new();
+    for body in part.bodies.iter().filter(|b| b.kind == BodyKind::Solid) {
+        for (i, shell) in body.shells.iter().enumerate().filter(|(_, s)| s.index() >= first_new) {
+            let faces: Vec<usize> = part.shells[shell.index()].faces.iter().map(|f| f.index()).collect();
+            let sign = if i == 0 { 1.0 } else { -1.0 };
+            let origin = a_point(part, faces[0]).unwrap_or_default();
+            if volume(part, &faces, origin).is_some_and(|(sum, sizes)| sign * sum < -SURE * sizes) {
+                wrong.extend(&part.shells[shell.index()].faces);
+            }
+        }
+    }
+    wrong.iter().for_each(|f| part.faces[f.index()].flipped ^= true);
+}
+
+/// A vertex of a face.
+fn a_point(part: &Part, face: usize) -> Option<DVec3> {
+    part.faces[face].loops.iter().find_map(|l| match l {
+        Loop::Edges { coedges, .. } => {
+            let edge = &part.edges[coedges.first()?.edge.index()];
+            Some(part.vertices[edge.start.index()].point)
+        }
+        _ => None,
+    })
 }
 
 /// Per face: where its shell came from, and, where the file calls that closed, how many faces it has.
@@ -111,10 +143,11 @@ fn add_bodies(part: &mut Part, old: usize, shells: &[(ShellId, bool)]) {
         layer: None,
         source: part.source,
     });
-    let mut new: Vec<Body> = Vec::new();
-    for &(shell, _) in shells.iter().filter(|s| s.1) {
-        new.push(Body { kind: BodyKind::Solid, shells: vec![shell], ..template.clone() });
-    }
+    let closed: Vec<ShellId> = shells.iter().filter(|s| s.1).map(|s| s.0).collect();
+    let mut new: Vec<Body> = with_voids(part, &closed)
+        .into_iter()
+        .map(|shells| Body { kind: BodyKind::Solid, shells, ..template.clone() })
+        .collect();
     let open: Vec<ShellId> = shells.iter().filter(|s| !s.1).map(|s| s.0).collect();
     if !open.is_empty() {
         // A solid that did not close stays what the file calls it.
@@ -165,4 +198,49 @@ fn is_closed_surface(surface: &Surface) -> bool {
 /// True where a face is the whole of a closed surface.
 pub(crate) fn is_whole(part: &Part, face: FaceId) -> bool {
     is_enclosed(part, face, 0)
+}
+
+/// Closed shells of one body as solids: each outer shell with the voids that lie directly in it.
+fn with_voids(part: &Part, closed: &[ShellId]) -> Vec<Vec<ShellId>> {
+    let faces =
+        |s: ShellId| -> Vec<usize> { part.shells[s.index()].faces.iter().map(|f| f.index()).collect() };
+    let boxes: Vec<Box3> = closed.iter().map(|s| border_box(part, &faces(*s))).collect();
+    let within = |inner: usize, outer: usize| {
+        let (i, o) = (boxes[inner], boxes[outer]);
+        let nested = inner != outer && !i.is_empty() && o.min.cmple(i.min).all() && o.max.cmpge(i.max).all();
+        nested
+            && a_point(part, faces(closed[inner])[0])
+                .is_some_and(|p| winding(part, &faces(closed[outer]), p).is_some_and(|w| w.abs() > 0.5))
+    };
+    let n = closed.len();
+    let around: Vec<Vec<usize>> = (0..n).map(|i| (0..n).filter(|&o| within(i, o)).collect()).collect();
+    let mut solids: Vec<Vec<ShellId>> = Vec::new();
+    let mut place = vec![usize::MAX; n];
+    // In even depth lies material, in odd depth a void of the shell that is one less deep.
+    for i in (0..n).filter(|&i| around[i].len() % 2 == 0) {
+        place[i] = solids.len();
+        solids.push(vec![closed[i]]);
+    }
+    for i in (0..n).filter(|&i| around[i].len() % 2 == 1) {
+        let outer = around[i].iter().find(|&&o| around[o].len() + 1 == around[i].len());
+        match outer.map(|&o| place[o]).filter(|&p| p != usize::MAX) {
+            Some(p) => solids[p].push(closed[i]),
+            None => solids.push(vec![closed[i]]),
+        }
+    }
+    solids
+}
+
+/// The box of the edges of faces.
+fn border_box(part: &Part, faces: &[usize]) -> Box3 {
+    let mut found = Box3::EMPTY;
+    for a_loop in faces.iter().flat_map(|&f| &part.faces[f].loops) {
+        let Loop::Edges { coedges, .. } = a_loop else { continue };
+        for edge in coedges.iter().map(|c| &part.edges[c.edge.index()]) {
+            if let Some(curve) = edge.curve.as_deref().filter(|_| edge.range.is_finite()) {
+                found = found.union(curve.bbox(edge.range));
+            }
+        }
+    }
+    found
 }

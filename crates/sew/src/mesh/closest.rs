@@ -10,6 +10,8 @@ use rayon::prelude::*;
 
 /// Two places of one border may be sewn where it runs this many times their distance, and tolerances, between them.
 const APART: f64 = 4.0;
+/// Lengths along a border are good for this part of the whole.
+const ROUNDING: f64 = 1e-9;
 /// A foot this near (in tolerances) to a vertex of the border is that vertex.
 const SNAP: f64 = 0.25;
 
@@ -183,8 +185,9 @@ fn nearest(boundaries: &Boundaries, edges: &Edges, border: u32, p: DVec3, own: f
         let (other, k) = edges.of[e as usize];
         let ends = boundaries.all[other as usize].edge(k as usize).map(|v| boundaries.point(v));
         let (d, share) = segment_distance(p, ends[0], ends[1]);
-        let short = other == border
-            && between(boundaries, border, own, along(boundaries, other, k, share)) <= APART * d;
+        let run = || between(boundaries, border, own, along(boundaries, other, k, share));
+        let short =
+            other == border && run() <= APART * d + ROUNDING * boundaries.all[border as usize].length();
         (!short).then_some(d)
     });
     found.map(|f| f.1)

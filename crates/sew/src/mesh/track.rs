@@ -7,7 +7,8 @@
 //! stays. Vertices that lost theirs get one by their share of the length between the neighbouring correspondences.
 
 use super::boundary::Boundaries;
-use super::closest::{Approach, Approaches, Place, along, vertex_place};
+use super::closest::{Approach, Approaches, Place, along, between, vertex_place};
+use std::collections::BTreeMap;
 
 /// Two borders may differ in length between two correspondences by so many tolerances.
 const SLACK: f64 = 6.0;
@@ -47,7 +48,7 @@ pub(crate) fn joints(boundaries: &Boundaries, approaches: &Approaches, tolerance
     });
     for group in all.chunk_by(|a, b| key(a) == key(b)) {
         let tracker = Tracker { boundaries, borders: key(&group[0]), tolerance };
-        for stretch in tracker.stretches(group) {
+        for stretch in tracker.stretches(&without_doubles(boundaries, group, tolerance)) {
             found.stretches += 1;
             found.pairs.extend(tracker.settle(stretch));
         }
@@ -59,6 +60,35 @@ fn ordered(a: &Approach) -> Match {
     let swap = (a.onto.border, a.onto.along) < (a.from.border, a.from.along);
     let places = if swap { [a.onto, a.from] } else { [a.from, a.onto] };
     Match { places, distance: a.distance }
+}
+
+/// Where two vertices correspond, neither corresponds to a point beside the other one too.
+fn without_doubles(boundaries: &Boundaries, group: &[Match], tolerance: f64) -> Vec<Match> {
+    let both = |m: &Match| m.places.iter().all(|p| p.share == 0.0 || p.share == 1.0);
+    let mut partner: BTreeMap<(usize, u32), Vec<f64>> = BTreeMap::new();
+    for m in group.iter().filter(|m| both(m)) {
+        for side in 0..2 {
+            partner.entry((side, vertex(&m.places[side]))).or_default().push(m.places[1 - side].along);
+        }
+    }
+    let beside = |m: &Match| {
+        (0..2).any(|side| {
+            let p = m.places[side];
+            let known = partner.get(&(side, vertex(&p))).filter(|_| p.share == 0.0 || p.share == 1.0);
+            known.is_some_and(|k| {
+                k.iter().any(|&a| {
+                    let q = m.places[1 - side];
+                    between(boundaries, q.border, a, q.along) <= 2.0 * tolerance
+                })
+            })
+        })
+    };
+    group.iter().filter(|m| both(m) || !beside(m)).copied().collect()
+}
+
+/// The vertex of a place at an end of its edge.
+fn vertex(place: &Place) -> u32 {
+    place.edge + u32::from(place.share == 1.0)
 }
 
 struct Tracker<'a> {
