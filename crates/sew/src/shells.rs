@@ -217,7 +217,7 @@ fn with_voids(part: &Part, closed: &[ShellId]) -> Vec<Vec<ShellId>> {
     let mut solids: Vec<Vec<ShellId>> = Vec::new();
     let mut place = vec![usize::MAX; n];
     // In even depth lies material, in odd depth a void of the shell that is one less deep.
-    for i in (0..n).filter(|&i| around[i].len() % 2 == 0) {
+    for i in (0..n).filter(|&i| around[i].len().is_multiple_of(2)) {
         place[i] = solids.len();
         solids.push(vec![closed[i]]);
     }

@@ -91,7 +91,7 @@ fn check(part: &Part, report: &SewReport) {
                 let end = if coedge.forward { edge.end } else { edge.start };
                 let start = if next.forward { after.start } else { after.end };
                 assert_eq!(end, start, "loops stay closed");
-                let curve = edge.curve.as_ref().unwrap();
+                let curve = edge.curve.as_ref().expect("edges of these tests have curves");
                 for (t, v) in [(edge.range.start, edge.start), (edge.range.end, edge.end)] {
                     let off = curve.point(t).distance(part.vertices[v.index()].point);
                     assert!(off <= 2.0 * report.tolerance + 1e-9, "{off}");
