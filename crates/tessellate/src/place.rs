@@ -88,7 +88,10 @@ impl Rows {
         let plans: Vec<_> = placers.iter().map(|p| (p, p.plan())).collect();
         let enough = plans.iter().all(|(_, plan)| plan.strips <= 1.0 + 1e-6)
             || plans.iter().any(|(_, p)| p.strips == 0.0);
-        let Some((placer, plan)) = plans.into_iter().min_by(|a, b| a.1.unevenness.total_cmp(&b.1.unevenness))
+        // Rows along u unless those along v are clearly better: rounding must not decide.
+        let better = |a: &Plan, b: &Plan| a.unevenness < b.unevenness - 1e-9 * (1.0 + b.unevenness);
+        let Some((placer, plan)) =
+            plans.into_iter().reduce(|best, next| if better(&next.1, &best.1) { next } else { best })
         else {
             return Self { rows: Vec::new() };
         };

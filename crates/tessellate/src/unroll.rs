@@ -53,7 +53,7 @@ impl Chart {
             None
         };
         let polygons = unroll.nest(outer, plain)?;
-        let polygons = unroll.cut_at_creases(polygons);
+        let polygons = unroll.cut_at_creases(with_shared_coordinates(polygons));
         let subdivided_poles = |polygon| unroll.subdivided_poles(polygon);
         let mut chart =
             Chart { private: unroll.private.clone(), reversed: unroll.reversed, ..Chart::default() };
@@ -99,6 +99,33 @@ fn contains(polygon: &[ChartPoint], p: DVec2) -> bool {
 
 fn shifted(points: &[ChartPoint], by: DVec2) -> Vec<ChartPoint> {
     points.iter().map(|p| ChartPoint { uv: p.uv + by, ..*p }).collect()
+}
+
+/// Coordinates this share of the face apart are the same but for rounding.
+const SAME_COORDINATE: f64 = 1e-11;
+
+/// Gives points on one line of parameters exactly the same coordinate: else rounding would decide which of them comes first, and
+/// the same part would get another mesh elsewhere.
+fn with_shared_coordinates(mut polygons: Vec<Vec<ChartPoint>>) -> Vec<Vec<ChartPoint>> {
+    let extent = UvBox::from_points(polygons.iter().flatten().map(|p| p.uv)).size();
+    for axis in 0..2 {
+        let near = SAME_COORDINATE * extent[axis];
+        let mut points: Vec<&mut f64> = polygons
+            .iter_mut()
+            .flatten()
+            .map(|p| if axis == 0 { &mut p.uv.x } else { &mut p.uv.y })
+            .collect();
+        points.sort_by(|a, b| a.total_cmp(b));
+        let mut shared = f64::NEG_INFINITY;
+        for value in points {
+            if *value - shared <= near {
+                *value = shared;
+            } else {
+                shared = *value;
+            }
+        }
+    }
+    polygons
 }
 
 fn along_axis(axis: usize, value: f64) -> DVec2 {
@@ -344,7 +371,7 @@ impl Unroll<'_, '_> {
                 continue;
             }
             let count = self.pole_points(point.uv, next, means.into());
-            let at = |k: usize| point.uv.lerp(next, k as f64 / count as f64);
+            let at = |k: usize| point.uv + (next - point.uv) * (k as f64 / count as f64);
             fine.extend((0..count).map(|k| ChartPoint { uv: at(k), ..*point }));
         }
         fine
@@ -393,7 +420,12 @@ impl Unroll<'_, '_> {
                 candidates.push(((d.x * du).powi(2) + (d.y * dv).powi(2), i, j, turns));
             }
         }
-        candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
+        // Of cuts that only rounding tells apart, the first along the loops.
+        let scale = candidates[0].0;
+        candidates
+            .chunk_by_mut(|x, y| y.0 - x.0 <= 1e-9 * (scale + x.0))
+            .for_each(|equal| equal.sort_by_key(|c| (c.1, c.2)));
         let crosses = |&&(_, i, j, turns): &&(f64, usize, usize, f64)| {
             let (p, q) = (a.points[i].uv, b.points[j].uv + turn * turns);
             !holes.iter().chain([a, b]).any(|hole| self.crosses_loop(p, q, hole, turn))

@@ -57,7 +57,7 @@ pub fn diagonal(part: &Part) -> f64 {
 
 pub fn mesh(part: &Part, tolerance: f64, angle: Option<f64>) -> (PartMesh, PartReport) {
     let options =
-        Options::new(tolerance).with_angle(angle).with_face_timeout(Some(std::time::Duration::from_secs(4)));
+        Options::new(tolerance).with_angle(angle).with_face_timeout(Some(std::time::Duration::from_secs(60)));
     tessellate_part(part, &options, &Cancel::default(), &|_| {})
 }
 
