@@ -324,6 +324,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         let rows = Rows::new(self.context.surface, &self.chart, self.limits);
         let mut hint = 0;
         for p in rows.insertion_order() {
+            let p = self.chart.grid.snap(p);
             let at = self.mesh.locate(p, hint);
             let (Location::Inside(t) | Location::OnEdge(t, _)) = at else { continue };
             hint = t;

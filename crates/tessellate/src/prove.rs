@@ -294,7 +294,8 @@ impl<'a> Prover<'a> {
         let on_crease = self.crease_point(corners);
         let at_middle = longest.filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
         let middle = at_middle.map(|i| corners[(i + 1) % 3].midpoint(corners[(i + 2) % 3]));
-        for p in [on_crease, middle, Some(center)].into_iter().flatten() {
+        let inner = [middle, Some(center)].map(|p| p.map(|p| work.chart.grid.snap(p)));
+        for p in [on_crease, inner[0], inner[1]].into_iter().flatten() {
             let at = work.mesh.locate(p, t);
             if !matches!(at, Location::Inside(_) | Location::OnEdge(..)) {
                 continue;

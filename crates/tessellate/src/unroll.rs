@@ -26,6 +26,8 @@ pub(crate) struct Chart {
     /// The outer loop ran the other way in the file: it or the sense flag is wrong, or the loop folds over itself. Triangles
     /// follow the loop until the neighbours are known.
     pub reversed: bool,
+    /// Where points inside belong.
+    pub grid: Grid,
 }
 
 /// A seam or natural side is cut into chords a little shorter than allowed.
@@ -52,11 +54,13 @@ impl Chart {
         } else {
             None
         };
-        let polygons = unroll.nest(outer, plain)?;
-        let polygons = unroll.cut_at_creases(with_shared_coordinates(polygons));
-        let subdivided_poles = |polygon| unroll.subdivided_poles(polygon);
+        let mut polygons = unroll.nest(outer, plain)?;
+        let grid = Grid::over(UvBox::from_points(polygons.iter().flatten().map(|p| p.uv)).size());
+        polygons.iter_mut().flatten().for_each(|p| p.uv = grid.snap(p.uv));
+        let polygons = unroll.cut_at_creases(polygons);
+        let subdivided_poles = |polygon| unroll.subdivided_poles(polygon, &grid);
         let mut chart =
-            Chart { private: unroll.private.clone(), reversed: unroll.reversed, ..Chart::default() };
+            Chart { private: unroll.private.clone(), reversed: unroll.reversed, grid, ..Chart::default() };
         for polygon in polygons {
             let start = chart.points.len() as u32;
             chart.points.extend(subdivided_poles(polygon));
@@ -101,31 +105,33 @@ fn shifted(points: &[ChartPoint], by: DVec2) -> Vec<ChartPoint> {
     points.iter().map(|p| ChartPoint { uv: p.uv + by, ..*p }).collect()
 }
 
-/// Coordinates this share of the face apart are the same but for rounding.
-const SAME_COORDINATE: f64 = 1e-11;
+/// A grid of parameters finer than anything that is measured and coarser than rounding. Whatever decides how triangles join lies
+/// on it: else rounding would decide which of two points comes first or on which side of an edge one lies, and the same
+/// part would get another mesh elsewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Grid {
+    /// Powers of two, so that places on the grid are exact; 0 where there is none.
+    quantum: DVec2,
+}
 
-/// Gives points on one line of parameters exactly the same coordinate: else rounding would decide which of them comes first, and
-/// the same part would get another mesh elsewhere.
-fn with_shared_coordinates(mut polygons: Vec<Vec<ChartPoint>>) -> Vec<Vec<ChartPoint>> {
-    let extent = UvBox::from_points(polygons.iter().flatten().map(|p| p.uv)).size();
-    for axis in 0..2 {
-        let near = SAME_COORDINATE * extent[axis];
-        let mut points: Vec<&mut f64> = polygons
-            .iter_mut()
-            .flatten()
-            .map(|p| if axis == 0 { &mut p.uv.x } else { &mut p.uv.y })
-            .collect();
-        points.sort_by(|a, b| a.total_cmp(b));
-        let mut shared = f64::NEG_INFINITY;
-        for value in points {
-            if *value - shared <= near {
-                *value = shared;
-            } else {
-                shared = *value;
-            }
-        }
+/// The grid has 2 to this power places across a face, or up to twice as many.
+const GRID_BITS: i32 = 36;
+
+impl Grid {
+    fn over(extent: DVec2) -> Self {
+        // Extents are often powers of two themselves: keep away from where the grid changes.
+        let quantum = |length: f64| {
+            let exponent = (0.7 * length).log2().floor();
+            if exponent.abs() < 900.0 { 2f64.powi(exponent as i32 - GRID_BITS) } else { 0.0 }
+        };
+        Self { quantum: DVec2::new(quantum(extent.x), quantum(extent.y)) }
     }
-    polygons
+
+    /// The nearest place on the grid.
+    pub fn snap(&self, p_uv: DVec2) -> DVec2 {
+        let snap = |t: f64, quantum: f64| if quantum > 0.0 { (t / quantum).round() * quantum } else { t };
+        DVec2::new(snap(p_uv.x, self.quantum.x), snap(p_uv.y, self.quantum.y))
+    }
 }
 
 fn along_axis(axis: usize, value: f64) -> DVec2 {
@@ -358,7 +364,7 @@ impl Unroll<'_, '_> {
     }
 
     /// Gives every pole line chart points to fan from, one for each neighbour that needs one.
-    fn subdivided_poles(&self, polygon: Vec<ChartPoint>) -> Vec<ChartPoint> {
+    fn subdivided_poles(&self, polygon: Vec<ChartPoint>, grid: &Grid) -> Vec<ChartPoint> {
         if polygon.iter().all(|p| p.segment != Segment::Pole) {
             return polygon;
         }
@@ -371,7 +377,10 @@ impl Unroll<'_, '_> {
                 continue;
             }
             let count = self.pole_points(point.uv, next, means.into());
-            let at = |k: usize| point.uv + (next - point.uv) * (k as f64 / count as f64);
+            let at = |k: usize| match k {
+                0 => point.uv,
+                _ => grid.snap(point.uv + (next - point.uv) * (k as f64 / count as f64)),
+            };
             fine.extend((0..count).map(|k| ChartPoint { uv: at(k), ..*point }));
         }
         fine
@@ -421,11 +430,11 @@ impl Unroll<'_, '_> {
             }
         }
         candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
-        // Of cuts that only rounding tells apart, the first along the loops.
+        // Of cuts that only rounding tells apart, the one between the first samples.
         let scale = candidates[0].0;
         candidates
             .chunk_by_mut(|x, y| y.0 - x.0 <= 1e-9 * (scale + x.0))
-            .for_each(|equal| equal.sort_by_key(|c| (c.1, c.2)));
+            .for_each(|equal| equal.sort_by_key(|c| (a.points[c.1].key, b.points[c.2].key)));
         let crosses = |&&(_, i, j, turns): &&(f64, usize, usize, f64)| {
             let (p, q) = (a.points[i].uv, b.points[j].uv + turn * turns);
             !holes.iter().chain([a, b]).any(|hole| self.crosses_loop(p, q, hole, turn))
