@@ -8,9 +8,7 @@ use common::{corpus, index, json, model, run};
 /// Models that are not meshed cleanly yet, and why. The report owns up to each (exit 1 or 2); one that becomes clean must be
 /// taken off this list.
 const KNOWN: &[(&str, &str)] = &[
-    ("degree_100", "thin triangles; slow to evaluate"),
     ("weight_negative", "nothing is proven about weights that are not positive"),
-    ("weight_range", "weights from 1e-3 to 1e3: triangles as thin as rounding"),
     ("offset_bspline", "nothing is proven about offsets of free surfaces"),
 ];
 
