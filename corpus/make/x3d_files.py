@@ -103,6 +103,19 @@ def ring() -> str:
     )
 
 
+@good("thin_tube", "a bent periodic tube a hundred times as long as thick: it turns faster than it strays", faces=1,
+      closed=False)
+def thin_tube() -> str:
+    net = []
+    for j in range(6):
+        a = math.tau * (j % 5) / 5
+        net += [(i / 6, 0.1 * (i in (1, 2)) + 0.006 * math.cos(a), 0.006 * math.sin(a)) for i in range(4)]
+    return CLASSIC + (
+        "Shape { geometry NurbsPatchSurface { vClosed TRUE uDimension 4 vDimension 6 uOrder 4 vOrder 4\n"
+        f" controlPoint CoordinateDouble {{ point [ {numbers(net)} ] }} }} }}\n"
+    )
+
+
 @good("swept", "a spline swept along a line, and a profile swung round a circle", faces=2, closed=False)
 def swept() -> str:
     arc = f"weight [ 1 {W:.9g} 1 ]"
