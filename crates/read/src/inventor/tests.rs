@@ -202,6 +202,14 @@ fn uses_of_uses_end() {
         "{:?}",
         model.warnings
     );
+    // A chain of single uses, far longer than any file's.
+    let mut text = "DEF N0 Separator { Cube { } }".to_owned();
+    for i in 1..3000 {
+        text += &format!("DEF N{i} Separator {{ USE N{j} }}", j = i - 1);
+    }
+    // In another colour all of it is walked through once more.
+    text += "Material { diffuseColor 1 0 0 } USE N2999";
+    assert!(!read(&text).parts.is_empty());
     // A node inside itself.
     let model = read(&format!("DEF A Group {{ {} {PATCH} USE A USE A }}", coordinates(1.0)));
     assert!(!model.parts.is_empty());

@@ -289,6 +289,14 @@ fn nests_and_fans_of_uses_end() {
     assert!(read_bytes(deep.as_bytes(), "deep").is_err());
     let deep = format!("<X3D><Scene>{}<Shape><Box/></Shape>", "<Group>".repeat(5000));
     assert!(read_bytes(deep.as_bytes(), "deep").is_err());
+    let mut text = "#VRML V2.0 utf8\nPROTO P0 [] { Shape { geometry Box { } } }".to_owned();
+    for i in 1..1000 {
+        text += &format!(
+            "PROTO P{i} [] {{ Group {{ children P{j} {{ }} }} }}\nDEF N{i} Group {{ children P{j} {{ }} }}",
+            j = i - 1
+        );
+    }
+    let _ = read_bytes(text.as_bytes(), "chain");
     let mut text = "#VRML V2.0 utf8\nDEF N0 Shape { geometry Box { } }".to_owned();
     for i in 1..64 {
         text += &format!("DEF N{i} Group {{ children [ USE N{j} USE N{j} USE N{j} ] }}", j = i - 1);
