@@ -598,7 +598,7 @@ impl Unroll<'_, '_> {
         // What the file runs as a hole is one, even where coarse chords put it across the outer loop: finer ones will not.
         // What it runs as an outer loop is one outside the outer loop, another piece of the face, and inside a hole: an island.
         let wrong: Vec<bool> = (0..holes.len())
-            .map(|i| area(&holes[i].points) > 0.0 && inside[i] && holes_around(&holes, i) % 2 == 0)
+            .map(|i| area(&holes[i].points) > 0.0 && inside[i] && holes_around(&holes, i).is_multiple_of(2))
             .collect();
         holes.iter_mut().zip(wrong).filter(|(_, wrong)| *wrong).for_each(|(hole, _)| hole.reverse());
         let mut polygons = vec![outer];
