@@ -102,7 +102,11 @@ fn side(context: &FaceContext<'_, '_>, chart: &Chart, i: usize, next: usize) -> 
             let curve = context.part.edges[edge as usize].curve.as_deref();
             let middle = curve.map(|c| c.point(0.5 * (samples.t[k] + samples.t[k + 1])));
             let lifted = context.surface.point(uv[0].midpoint(uv[1]));
-            middle.map_or(0.0, |middle| (lifted - middle - off).length())
+            // A vertex beside its curve bends the last chord, however short it is.
+            let pinned = curve.map_or(0.0, |c| {
+                c.point(samples.t[k]).distance(ends.0).max(c.point(samples.t[k + 1]).distance(ends.1))
+            });
+            middle.map_or(0.0, |middle| ((lifted - middle - off).length() - pinned).max(0.0))
         }
         Segment::Seam | Segment::Pole => 0.0,
     };

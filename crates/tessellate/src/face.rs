@@ -169,7 +169,10 @@ impl<'a, 's> FaceWork<'a, 's> {
         work.measure_boundary();
         let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
         let deadline = options.face_timeout.map(|t| started + t);
-        let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, how.accept);
+        // Loops that cross in truth leave triangles turned over, which no refining mends.
+        let hopeless = clipped && work.is_turned_somewhere();
+        let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, how.accept || hopeless);
+        prover.hopeless = hopeless;
         let verdict = match options.strategy {
             Strategy::Default => {
                 work.fill_by_rows();

@@ -4,7 +4,7 @@ use crate::chart::Segment;
 use crate::face::FaceWork;
 use crate::metric::{Limits, Metric};
 use crate::options::{Bound, Cancel, Options};
-use crate::triangulate::{Location, NONE};
+use crate::triangulate::{Location, NONE, orient};
 use chordal_nurbs::{DVec2, DVec3, Facet, FacetBound, Piece, Surface, SurfaceBounds, facet_bound};
 use std::collections::VecDeque;
 use std::time::Instant;
@@ -33,7 +33,15 @@ pub(crate) struct Prover<'a> {
     sampled: bool,
     /// The last round: what cannot be mended is accepted and reported with its error.
     accept: bool,
+    /// Whatever is mended, the face will not be proven: little effort will do.
+    pub hopeless: bool,
 }
+
+/// Steps per triangle that a face begins with, and some more, after which it is stuck.
+const BUDGET: (usize, usize) = (16, 4_000);
+
+/// The same for faces that will not be proven.
+const HOPELESS_BUDGET: (usize, usize) = (4, 100);
 
 /// A flip is worth trying for facets whose error is at most this many tolerances.
 const FLIP_HELPS: f64 = 3.0;
@@ -69,7 +77,17 @@ impl<'a> Prover<'a> {
         accept: bool,
     ) -> Self {
         let sampled = options.bound == Bound::Estimated || !bounds.is_bounded();
-        Self { bounds, limits, options, deadline, cancel, scratch: Vec::new(), sampled, accept }
+        Self {
+            bounds,
+            limits,
+            options,
+            deadline,
+            cancel,
+            scratch: Vec::new(),
+            sampled,
+            accept,
+            hopeless: false,
+        }
     }
 
     /// Refines until every triangle is within the limits.
@@ -83,7 +101,8 @@ impl<'a> Prover<'a> {
         let mut requests = Vec::new();
         let mut errors: Vec<f64> = vec![f64::NAN; work.mesh.triangles.len()];
         let mut queue: VecDeque<u32> = (0..work.mesh.triangles.len() as u32).collect();
-        let budget = 16 * work.mesh.triangles.len() + 4_000;
+        let (per_triangle, more) = if self.hopeless { HOPELESS_BUDGET } else { BUDGET };
+        let budget = per_triangle * work.mesh.triangles.len() + more;
         let mut steps = 0usize;
         while let Some(t) = queue.pop_front() {
             if !errors[t as usize].is_nan() {
@@ -219,13 +238,17 @@ impl<'a> Prover<'a> {
             return (0.0, Fault::None);
         }
         let facet = Self::facet(work, t);
+        let [a, b, c] = facet.uv;
+        if self.accept && orient(a, b, c) < 0.0 {
+            return (f64::INFINITY, Fault::None);
+        }
         let bound = self.bound(work, &facet);
         let boundary = work.mesh.neighbors[t as usize].map(|n| n == NONE);
         let tolerance = self.limits.tolerance;
         if bound.error > tolerance {
             let coarse = (0..3).filter(|&i| boundary[i] && bound.edges[i] > tolerance);
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
-            let worst = worst.or_else(|| low_over_boundary(&facet, boundary, FOLD_HEIGHT * tolerance));
+            let worst = worst.or_else(|| close_to_boundary(work, &facet, boundary, FOLD_HEIGHT * tolerance));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
         let corners = work.mesh.triangles[t as usize];
@@ -392,13 +415,19 @@ fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize
     clearly_longest(inner, length)
 }
 
-/// The longest boundary edge of a facet that is lower over it than this: what is wrong with it is the chord's, and no point
-/// inside helps.
-fn low_over_boundary(facet: &Facet, boundary: [bool; 3], height: f64) -> Option<usize> {
-    let [a, b, c] = facet.xyz;
-    let side = |i: usize| facet.xyz[(i + 2) % 3].distance(facet.xyz[(i + 1) % 3]);
-    let longest = (0..3).filter(|&i| boundary[i]).max_by(|&i, &j| side(i).total_cmp(&side(j)))?;
-    ((b - a).cross(c - a).length() <= height * side(longest)).then_some(longest)
+/// A boundary edge whose image on the surface passes the corner opposite to it nearer than this: what is wrong with the facet is
+/// the chord's, and no point inside helps.
+fn close_to_boundary(
+    work: &FaceWork<'_, '_>,
+    facet: &Facet,
+    boundary: [bool; 3],
+    distance: f64,
+) -> Option<usize> {
+    (0..3).filter(|&i| boundary[i]).find(|&i| {
+        let [p, a, b] = [0, 1, 2].map(|k| facet.uv[(i + k) % 3]);
+        let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        work.context.surface.point(a.lerp(b, along)).distance(facet.xyz[i]) <= distance
+    })
 }
 
 /// The longest; of those that only rounding tells apart the first, so that the same part elsewhere gets the same mesh.

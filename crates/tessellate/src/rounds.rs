@@ -23,7 +23,7 @@ use std::time::Instant;
 const MAX_ROUNDS: usize = 8;
 
 /// In so many rounds chords are halved, later quartered: where a surface turns within almost no distance, halves do not get there.
-const HALVING_ROUNDS: usize = 4;
+const HALVING_ROUNDS: usize = 3;
 
 /// From this round on loops that still cross are taken to cross in truth.
 const LAST_RESORT: usize = 6;
@@ -217,18 +217,34 @@ impl Job<'_> {
         if self.cancel.is_cancelled() {
             return Outcome::Failed("cancelled".into());
         }
-        let context = FaceContext {
-            part: self.part,
-            face,
-            surface,
-            edges,
-            last_resort: round >= LAST_RESORT,
-            accept: round == MAX_ROUNDS,
-            resolution: self.resolution,
+        let attempt = |last_resort: bool, accept: bool| {
+            let context = FaceContext {
+                part: self.part,
+                face,
+                surface,
+                edges,
+                last_resort,
+                accept,
+                resolution: self.resolution,
+            };
+            // The one place where a panic of ours becomes a face's failure.
+            catch_unwind(AssertUnwindSafe(|| mesh_face(&context, &self.limits, self.options, self.cancel)))
+                .unwrap_or_else(|_| Outcome::Failed("internal error".into()))
         };
-        // The one place where a panic of ours becomes a face's failure.
-        catch_unwind(AssertUnwindSafe(|| mesh_face(&context, &self.limits, self.options, self.cancel)))
-            .unwrap_or_else(|_| Outcome::Failed("internal error".into()))
+        match attempt(round >= LAST_RESORT, round == MAX_ROUNDS) {
+            Outcome::Finer(mut chords) => {
+                chords.retain(|&(edge, chord)| self.can_be_finer(&edges[edge as usize], chord as usize));
+                // Chords as short as points do not help: better what there is now than the same after more rounds.
+                if chords.is_empty() { attempt(true, true) } else { Outcome::Finer(chords) }
+            }
+            outcome => outcome,
+        }
+    }
+
+    /// False for a chord, and a curve over it, within one point.
+    fn can_be_finer(&self, samples: &EdgeSamples, chord: usize) -> bool {
+        let length = samples.points[chord].distance(samples.points[chord + 1]);
+        length > self.resolution || samples.sag[chord] > self.resolution
     }
 
     /// Meshes all faces; those that ask for finer edges, and their neighbours, again.
