@@ -3,11 +3,13 @@
 //! Notation: T the triangle in parameter space with corners p_i, L the affine map of T onto the facet, S the surface,
 //! n the facet's unit normal, d_ij = p_j − p_i, λ barycentric coordinates, e = S − L (zero at the corners).
 //!
-//! **Along n.** For a quadratic f = n·S the error of linear interpolation is exactly −½ Σ_{i<j} λ_i λ_j h_ij with
-//! h_ij = D²f\[d_ij, d_ij\]. (For rational surfaces f is the polynomial w n·(S − a).) For any other f the second derivatives are split into a middle (treated so) and a
-//! deviation r over T (which adds at most ⅛(r_uu R_u² + 2 r_uv R_u R_v + r_vv R_v²), R the extent of T; this follows
-//! from Taylor's formula with integral remainder and Σ λ_i (u − u_i)² ≤ R_u²/4). Where that is not enough, e is evaluated
-//! on a lattice of k² small triangles and only what lies between its points is bounded so: k² times less.
+//! **Along n.** For a cubic f = n·S the error of linear interpolation is known exactly ([`Cubic`]: its quadratic part is
+//! −½ Σ_{i<j} λ_i λ_j h_ij with h_ij = D²f\[d_ij, d_ij\] at the centroid). (For rational surfaces f is the polynomial w n·(S − a).)
+//! Any other f is modelled by one; its second derivatives stray from the model's by at most r over T, which adds at most
+//! ⅛(r_uu R_u² + 2 r_uv R_u R_v + r_vv R_v²), R the extent of T; this follows from Taylor's formula with integral remainder and
+//! Σ λ_i (u − u_i)² ≤ R_u²/4. Where that is not enough, e is evaluated on a lattice of k² small triangles and only what lies between
+//! its points is bounded so, of e itself or of its difference from the model: k² times less. Where even that is not enough, the
+//! lattice is made finer near the largest error only ([`Closer`]).
 //!
 //! **Sideways.** The image of an edge of T bends sideways by at most τ (the same formula for the in-plane normal m of the
 //! edge). A bend along an inner edge only shifts surface from one facet's side to its neighbour's: what it can cost is the slope
