@@ -30,6 +30,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Write the exact model of a CAD file as Chordal's own JSON, whole and without loss.
     Convert(ConvertArgs),
+    /// Mesh a model by several strategies and compare: triangles, edges, seconds, proven and measured error.
+    Compare(CompareArgs),
     /// Time reading and meshing in process.
     #[command(hide = true)]
     Bench(BenchArgs),
@@ -61,6 +63,9 @@ pub struct MeshArgs {
     /// Write the report to this file, as JSON; one object for one input, a list for several.
     #[arg(long, value_name = "R.json")]
     pub report: Option<PathBuf>,
+    /// Draw the subdivision and the triangles of every face in its plane of parameters, as SVG files in this folder.
+    #[arg(long, value_name = "DIR")]
+    pub debug_svg: Option<PathBuf>,
     /// Write nothing at all, and exit with 2, where anything would be left undone.
     #[arg(long)]
     pub strict: bool,
@@ -216,6 +221,7 @@ impl MeshArgs {
             .with_up(up)
             .with_edges(self.edges)
             .with_strict(self.strict)
+            .with_debug_svg(self.debug_svg.clone())
     }
 }
 
@@ -286,6 +292,35 @@ pub struct ConvertArgs {
     /// Make every face an island, with edges of its own that it shares with no other face.
     #[arg(long)]
     pub unsewn: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// A CAD file.
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
+    /// Which strategies, separated by commas [default: all].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = strategies())]
+    pub strategies: Vec<Strategy>,
+    /// Compare the proven and the estimated bound instead of the one of --bound.
+    #[arg(long)]
+    pub both_bounds: bool,
+    /// Draw the comparison into this file, as SVG.
+    #[arg(long, value_name = "OUT.svg")]
+    pub plot: Option<PathBuf>,
+    /// Print JSON instead of a table; it also says which parts of the tessellator ran.
+    #[arg(long)]
+    pub json: bool,
+    /// Say nothing on the way.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// All strategies where none is named.
+pub fn strategies_named(asked: &[Strategy]) -> Vec<Strategy> {
+    if asked.is_empty() { Strategy::entries().iter().map(|e| e.strategy).collect() } else { asked.to_vec() }
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,7 @@
 mod args;
 mod bench;
 mod check;
+mod compare;
 mod convert;
 mod exit;
 mod guard;
@@ -43,6 +44,7 @@ fn run() -> Exit {
         Command::Sew(args) => sew::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Convert(args) => convert::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),
     }
 }

@@ -1,6 +1,7 @@
 //! From results to the report.
 
 use crate::auditing::{AuditedPart, AuditedShell};
+use crate::compare::add_stages;
 use crate::info::{loose, warnings};
 use crate::job::{Job, MeshedPart};
 use crate::names::{bound_name, entity_id, face_kind};
@@ -163,6 +164,9 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
     report.seconds.edges += stages.edges;
     report.seconds.faces += stages.faces;
     report.seconds.stitch += stages.stitch;
+    if instances > 0 {
+        add_stages(&mut report.stages, meshed);
+    }
     let passed_through: usize = part.tessellated.iter().map(|t| t.triangles.len()).sum();
     let passed_points: usize = part.tessellated.iter().map(|t| t.points.len()).sum();
     report.triangles += instances * (meshed.mesh.triangle_count() + passed_through);

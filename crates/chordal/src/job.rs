@@ -7,6 +7,7 @@
 
 use crate::account::{Ledger, account};
 use crate::auditing::audit_parts;
+use crate::drawing::write_drawings;
 use crate::progress::FaceCounter;
 use crate::resolve::{Resolved, resolve};
 use crate::scene::scene;
@@ -129,6 +130,10 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     // 4. Mesh every placed part once: heal, discretise edges, size, place, trim and triangulate, stitch.
     let mut parts = mesh_parts(&model, &resolved, &job.cancel, &|progress| job.tell(progress));
     job.check_cancelled()?;
+
+    if let Some(folder) = &job.options.debug_svg {
+        write_drawings(folder, &parts)?;
+    }
 
     // 5. Audit: recompute every promise from the model and the meshes.
     job.tell(Progress::Auditing);

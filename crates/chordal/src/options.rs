@@ -3,6 +3,7 @@
 use crate::{Sew, Tolerance};
 use chordal_tessellate::{Bound, Strategy};
 use chordal_write::{Format, Unit, UpAxis};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// What is asked of a whole job.
@@ -38,6 +39,8 @@ pub struct JobOptions {
     pub up: Option<UpAxis>,
     /// Write the edges as lines too, where the format can.
     pub edges: bool,
+    /// Draw every face in its plane of parameters into this folder.
+    pub debug_svg: Option<PathBuf>,
 }
 
 impl Default for JobOptions {
@@ -56,6 +59,7 @@ impl Default for JobOptions {
             unit: None,
             up: None,
             edges: false,
+            debug_svg: None,
         }
     }
 }
@@ -111,6 +115,10 @@ impl JobOptions {
     }
     pub fn with_edges(mut self, edges: bool) -> Self {
         self.edges = edges;
+        self
+    }
+    pub fn with_debug_svg(mut self, folder: Option<PathBuf>) -> Self {
+        self.debug_svg = folder;
         self
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Lengths are millimetres, angles degrees, times seconds. A number that is not known is `null`.
 
+pub use crate::compare::StageEntry;
 use crate::sewing::SewingEntry;
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +52,8 @@ pub struct Report {
     pub warnings: Vec<WarningEntry>,
     pub output: Option<OutputReport>,
     pub seconds: Seconds,
+    /// Which parts of the tessellator ran, in the order of the faces.
+    pub stages: Vec<StageEntry>,
     /// Largest resident memory of the process so far, in bytes.
     pub peak_memory: Option<u64>,
     pub threads: usize,

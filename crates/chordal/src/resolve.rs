@@ -73,6 +73,7 @@ pub fn resolve(
                 .with_max_edge(options.max_edge.map(|length| length / part_use.scale))
                 .with_bound(options.bound)
                 .with_strategy(options.strategy)
+                .with_cells_recorded(options.debug_svg.is_some())
                 .with_face_timeout(options.face_timeout)
         })
         .collect();

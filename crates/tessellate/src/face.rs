@@ -30,6 +30,8 @@ pub(crate) struct FaceResult {
     pub curvature_bound: f64,
     /// Which parts ran.
     pub trace: Trace,
+    /// The cells of a subdivision, where they are asked for.
+    pub cells: Vec<UvBox>,
 }
 
 impl FaceResult {
@@ -125,6 +127,7 @@ pub(crate) struct FaceWork<'a, 's> {
     floor: f64,
     shape: Shape,
     pub trace: Trace,
+    pub cells: Vec<UvBox>,
 }
 
 impl<'a, 's> FaceWork<'a, 's> {
@@ -165,6 +168,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             shape,
             chart,
             trace: Trace::default(),
+            cells: Vec::new(),
         };
         work.measure_boundary();
         let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
@@ -178,7 +182,7 @@ impl<'a, 's> FaceWork<'a, 's> {
                 work.fill_by_rows();
                 prover.refine(&mut work)?
             }
-            other => strategy::fill(&mut work, &mut prover, other, options.bound)?,
+            _ => strategy::fill(&mut work, &mut prover, options)?,
         };
         match verdict {
             Verdict::Finer(chords) => Ok(Attempt::Over(Outcome::Finer(chords))),
@@ -342,6 +346,11 @@ impl<'a, 's> FaceWork<'a, 's> {
     /// Inserts a point that is known to lie inside; returns its index.
     pub fn insert(&mut self, p: DVec2, at: Location) -> Option<u32> {
         self.measure(p);
+        self.keep_inserted(p, at)
+    }
+
+    /// Inserts a point whose geometry is known already, or forgets that.
+    fn keep_inserted(&mut self, p: DVec2, at: Location) -> Option<u32> {
         let vertex = self.mesh.insert(p, at, &self.metrics);
         if vertex.is_none() {
             self.metrics.pop();
@@ -370,6 +379,13 @@ impl<'a, 's> FaceWork<'a, 's> {
             let height = m.determinant().max(0.0).sqrt() * (b - a).perp_dot(p - a).abs() / length.max(1e-300);
             height < 0.3
         })
+    }
+
+    /// The same, with a metric of the caller's choice for the new point.
+    pub fn insert_in_metric(&mut self, p: DVec2, at: Location, metric: Metric) -> Option<u32> {
+        self.measure(p);
+        *self.metrics.last_mut()? = metric;
+        self.keep_inserted(p, at)
     }
 
     /// Gives each triangle at a pole a corner of its own there. Returns how far these corners lie off the pole's vertex.
@@ -431,6 +447,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             bound,
             curvature_bound,
             trace: self.trace,
+            cells: self.cells,
         }
     }
 

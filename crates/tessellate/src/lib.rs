@@ -28,4 +28,4 @@ pub use options::{Bound, Cancel, Options};
 pub use report::{FaceReport, PartReport, StageSeconds};
 pub use rounds::tessellate_part;
 pub use strategy::trace::Trace;
-pub use strategy::{Cut, Strategy, StrategyEntry};
+pub use strategy::{Cut, Fill, Strategy, StrategyEntry, Stretch};

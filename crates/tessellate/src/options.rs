@@ -28,6 +28,8 @@ pub struct Options {
     pub max_edge: Option<f64>,
     pub bound: Bound,
     pub strategy: Strategy,
+    /// Report the cells of subdivisions, to be drawn.
+    pub record_cells: bool,
     /// Time after which a face is given up.
     pub face_timeout: Option<Duration>,
     /// Triangles after which a face is given up.
@@ -42,6 +44,7 @@ impl Options {
             max_edge: None,
             bound: Bound::Proven,
             strategy: Strategy::Default,
+            record_cells: false,
             face_timeout: None,
             face_triangles: 20_000_000,
         }
@@ -60,6 +63,10 @@ impl Options {
     }
     pub fn with_strategy(mut self, strategy: Strategy) -> Self {
         self.strategy = strategy;
+        self
+    }
+    pub fn with_cells_recorded(mut self, record: bool) -> Self {
+        self.record_cells = record;
         self
     }
     pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {

@@ -1,6 +1,7 @@
 //! What was done to a part, face by face.
 
 use crate::strategy::trace::Trace;
+use chordal_nurbs::UvBox;
 
 /// One face.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +21,8 @@ pub struct FaceReport {
     pub lower_bound: f64,
     /// Which parts of the tessellator ran, and what each made.
     pub trace: Trace,
+    /// The cells of its subdivision in the chart, where they were asked for.
+    pub cells: Vec<UvBox>,
     /// Why the face has no triangles, or not good enough ones.
     pub failed: Option<String>,
     /// The face is so thin that it has no area at the model's own accuracy; it has no triangles and needs none.

@@ -327,6 +327,7 @@ impl Job<'_> {
                     entry.pcurve_gap = pcurve_gaps[index];
                     entry.bound = result.bound;
                     entry.trace = result.trace.clone();
+                    entry.cells.clone_from(&result.cells);
                     entry.zero_area = result.triangles.is_empty();
                     entry.lower_bound =
                         lower_bound(&self.part.faces[index], edges, &closed, result.curvature_bound);

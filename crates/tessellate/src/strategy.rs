@@ -9,14 +9,24 @@ pub(crate) mod trace;
 
 mod borders;
 mod cells;
+mod chords;
 mod constrain;
 mod cut;
+mod delaunay;
+mod derivatives;
+mod grid;
 mod kd;
 mod node;
+mod plain;
+mod poles;
 mod polygons;
+mod quadtree;
+mod recursive;
 mod region;
 mod run;
 
+pub use delaunay::Fill;
+pub use quadtree::Stretch;
 pub(crate) use run::fill;
 
 /// Where a node of a subdivision is cut.
@@ -39,6 +49,17 @@ pub enum Strategy {
     Kd(Cut),
     /// Binary subdivision across the direction that bends more (the same section).
     Binary(Cut),
+    /// One grid for the whole face (survey of the Blender wiki, "Uniform Grid Cut").
+    UniformGrid,
+    /// A fixed number of cells per control cell and direction, 0 for as many as the bound asks for (the same survey,
+    /// "direct tessellation").
+    ControlCells { per_cell: u32 },
+    /// Bézier patches halved by a bound from their derivative patches (the same survey, "Recursive Subdivision").
+    Recursive,
+    /// Bézier patches cut into four (Kahlesz, Balázs, Klein 2001, sections 4, 6 and 7).
+    Quadtree(Stretch),
+    /// Fill points and a Delaunay triangulation (survey of the Blender wiki, "Delaunay Triangulation").
+    Delaunay(Fill),
 }
 
 /// A strategy as the command line and the documents know it.
@@ -64,32 +85,45 @@ const fn entry(
 
 const BALAZS: &str = "Balázs, Guthe, Klein 2004, sections 5.2, 6 and 7";
 
+const KAHLESZ: &str = "Kahlesz, Balázs, Klein 2001, sections 4, 6 and 7";
+const GRID_CUT: &str = "Blender wiki, Uniform Grid Cut";
+const DIRECT: &str = "Blender wiki, Tessellation Terminology: direct tessellation";
+const RECURSIVE: &str = "Blender wiki, Recursive Subdivision / Piecewise Bézier";
+const DELAUNAY: &str = "Blender wiki, Delaunay Triangulation";
+
 /// Every strategy, in the order of the help.
 static ENTRIES: &[StrategyEntry] = &[
-    entry(
-        Strategy::Default,
-        "default",
-        "rows and strips in the sizing metric, every triangle proven",
-        "Chordal",
-    ),
+    entry(Strategy::Default, "default", "rows and strips in the sizing metric", "docs/decisions"),
     entry(
         Strategy::Kd(Cut::Midpoint),
         "kd-midpoint",
-        "kd-tree cut half way in the direction of the worst point",
+        "kd-tree, halved in the direction of the worst point",
         BALAZS,
     ),
-    entry(Strategy::Kd(Cut::WorstPoint), "kd-worst", "kd-tree cut at the worst control point", BALAZS),
+    entry(Strategy::Kd(Cut::WorstPoint), "kd-worst", "kd-tree, cut at the worst control point", BALAZS),
+    entry(Strategy::Binary(Cut::Midpoint), "binary-midpoint", "cells halved across the larger bend", BALAZS),
+    entry(Strategy::Binary(Cut::WorstPoint), "binary-worst", "cells cut where they bend most", BALAZS),
+    entry(Strategy::UniformGrid, "grid", "one uniform grid per face", GRID_CUT),
+    entry(Strategy::ControlCells { per_cell: 0 }, "cells", "equally many cells per control cell", DIRECT),
+    entry(Strategy::Recursive, "recursive", "Bézier patches halved by their second derivatives", RECURSIVE),
+    entry(Strategy::Quadtree(Stretch::SingularValue), "quadtree", "Bézier patches cut into four", KAHLESZ),
     entry(
-        Strategy::Binary(Cut::Midpoint),
-        "binary-midpoint",
-        "binary subdivision half way across the larger bend",
-        BALAZS,
+        Strategy::Quadtree(Stretch::Edges),
+        "quadtree-eq3",
+        "the same with the document's bilinear norm",
+        KAHLESZ,
     ),
     entry(
-        Strategy::Binary(Cut::WorstPoint),
-        "binary-worst",
-        "binary subdivision at the worst point across the larger bend",
-        BALAZS,
+        Strategy::Delaunay(Fill::Uniform),
+        "delaunay-uniform",
+        "Delaunay triangles of a grid of points",
+        DELAUNAY,
+    ),
+    entry(
+        Strategy::Delaunay(Fill::Adaptive),
+        "delaunay-adaptive",
+        "Delaunay triangles, points by deviation",
+        DELAUNAY,
     ),
 ];
 
@@ -101,7 +135,11 @@ impl Strategy {
 
     /// The name on the command line and in reports.
     pub fn name(self) -> &'static str {
-        ENTRIES.iter().find(|e| e.strategy == self).map_or("unnamed", |e| e.name)
+        let named = match self {
+            Strategy::ControlCells { .. } => Strategy::ControlCells { per_cell: 0 },
+            other => other,
+        };
+        ENTRIES.iter().find(|e| e.strategy == named).map_or("unnamed", |e| e.name)
     }
 
     /// The strategy of this name.

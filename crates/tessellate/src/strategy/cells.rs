@@ -6,8 +6,9 @@
 
 use super::node::Measure;
 use super::region::Region;
+use super::run::Check;
 use crate::surface::FaceSurface;
-use chordal_nurbs::{DVec2, NurbsParameters, NurbsSurface, ParameterMap, Surface, UvBox};
+use chordal_nurbs::{BezierPatch, DVec2, NurbsParameters, NurbsSurface, ParameterMap, Surface, UvBox};
 
 /// Where a cell is to be cut: across u (axis 0) or v at this NURBS parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,11 @@ pub(crate) trait Rule: Send {
     /// The cuts of a cell that was found too coarse by the proof.
     fn forced(&self, piece: &NurbsSurface, measure: Measure) -> Vec<Split> {
         self.cuts(piece, 0.0, measure)
+    }
+    /// How far a trimming curve over this cell may lie from its chord, in the cell's own parameters from 0 to 1; none
+    /// where the method leaves that to the edges.
+    fn chord_share(&self, _piece: &NurbsSurface, _tolerance: f64) -> Option<f64> {
+        None
     }
     /// Where one cell is too coarse, all are cut.
     fn is_uniform(&self) -> bool {
@@ -54,14 +60,20 @@ pub(crate) struct Cell {
 /// The cells of one face.
 pub(crate) struct Cells {
     pub leaves: Vec<Cell>,
+    /// Of each root.
     maps: Vec<NurbsParameters>,
+    /// The NURBS parameters of each root.
+    roots: Vec<UvBox>,
 }
 
 /// No cell is cut more often than this.
 const DEEPEST: u32 = 60;
 
+/// Cuts lie at multiples of a root's extent over this: computed twice, on both sides of a border, they must be one corner.
+const STEPS: f64 = (1u32 << 24) as f64;
+
 /// Cells narrower than this share of the face's box are not cut: their corners would be one.
-const NARROWEST: f64 = 1e-7;
+const NARROWEST: f64 = 1e-6;
 
 /// The share of the tolerance that surfaces without an exact NURBS form may differ from the one that is subdivided.
 /// The proof is about the surface itself, so this only decides where cells end.
@@ -73,7 +85,7 @@ impl Cells {
     /// # Errors
     /// A sentence, where the surface has no NURBS form.
     pub fn new(surface: &FaceSurface<'_>, uv_box: UvBox, tolerance: f64) -> Result<Self, String> {
-        let mut cells = Self { leaves: Vec::new(), maps: Vec::new() };
+        let mut cells = Self { leaves: Vec::new(), maps: Vec::new(), roots: Vec::new() };
         let [us, vs] = [0, 1].map(|axis| root_breaks(surface, uv_box, axis));
         for u in us.windows(2) {
             for v in vs.windows(2) {
@@ -81,6 +93,7 @@ impl Cells {
                 let (piece, map) = nurbs_form(surface.surface, bounds, tolerance)?;
                 let map_index = cells.maps.len();
                 cells.maps.push(map);
+                cells.roots.push(piece.domain());
                 cells.leaves.push(Cell {
                     bounds,
                     piece,
@@ -112,7 +125,7 @@ impl Cells {
         region: &Region,
         tolerance: f64,
         measure: Measure,
-        check: &dyn Fn(usize) -> Result<(), String>,
+        check: Check<'_>,
     ) -> Result<(), String> {
         let (mut i, mut steps) = (0, 0usize);
         while i < self.leaves.len() {
@@ -126,7 +139,8 @@ impl Cells {
             } else {
                 Vec::new()
             };
-            if cuts.is_empty() || !self.cut(i, &cuts, region) {
+            let cuts: Vec<Split> = cuts.into_iter().map(|c| self.rounded(leaf.map, c)).collect();
+            if !self.cut(i, &cuts, region) {
                 self.leaves[i].finished = true;
                 i += 1;
             }
@@ -143,10 +157,28 @@ impl Cells {
         };
         let mut any = false;
         for i in leaves {
-            let cuts = rule.forced(&self.leaves[i].piece, measure);
+            let leaf = &self.leaves[i];
+            let cuts = rule.forced(&leaf.piece, measure);
+            let cuts: Vec<Split> = cuts.into_iter().map(|c| self.rounded(leaf.map, c)).collect();
             any |= self.cut(i, &cuts, region);
         }
         any
+    }
+
+    /// The leaf that holds each of these points of the chart.
+    pub fn leaf_of_each(&self, points: &[DVec2]) -> Vec<Option<usize>> {
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_unstable_by(|&a, &b| points[a].x.total_cmp(&points[b].x).then(a.cmp(&b)));
+        let mut found = vec![None; points.len()];
+        for (i, leaf) in self.leaves.iter().enumerate().filter(|(_, leaf)| leaf.met) {
+            let b = leaf.bounds;
+            let from = order.partition_point(|&k| points[k].x < b.min.x);
+            let to = order.partition_point(|&k| points[k].x <= b.max.x);
+            for &k in order[from..to].iter().filter(|&&k| b.contains(points[k])) {
+                found[k] = Some(i);
+            }
+        }
+        found
     }
 
     /// The leaves that hold points of the chart, each once, in their order.
@@ -189,6 +221,12 @@ impl Cells {
         true
     }
 
+    /// The same cut at the nearest step of the root.
+    fn rounded(&self, root: usize, cut: Split) -> Split {
+        let (low, size) = (self.roots[root].min[cut.axis], self.roots[root].size()[cut.axis]);
+        Split { at: low + size * (((cut.at - low) / size * STEPS).round() / STEPS), ..cut }
+    }
+
     fn halves(&self, cell: &Cell, cut: Split, narrowest: DVec2) -> Option<(Cell, Cell)> {
         let axis = cut.axis;
         let own = cell.piece.domain();
@@ -202,8 +240,7 @@ impl Cells {
         if !(room > narrowest[axis]) {
             return None;
         }
-        let (low, high) =
-            if axis == 0 { cell.piece.split_u(cut.at) } else { cell.piece.split_v(cut.at) }.ok()?;
+        let (low, high) = split(&cell.piece, axis, cut.at)?;
         let part = |piece: NurbsSurface, is_low: bool| {
             let mut bounds = cell.bounds;
             if is_low {
@@ -215,6 +252,35 @@ impl Cells {
         };
         Some((part(low, true), part(high, false)))
     }
+}
+
+/// The two parts of a piece; one that is a single Bézier patch is halved as such, which costs a fraction.
+fn split(piece: &NurbsSurface, axis: usize, at: f64) -> Option<(NurbsSurface, NurbsSurface)> {
+    let [p, q] = piece.degree();
+    if piece.counts() != [p + 1, q + 1] {
+        return if axis == 0 { piece.split_u(at) } else { piece.split_v(at) }.ok();
+    }
+    let patch = BezierPatch {
+        degree: [p, q],
+        points: piece.points().to_vec(),
+        weights: piece.weights().map(<[f64]>::to_vec),
+    };
+    let domain = piece.domain();
+    let t = (at - domain.min[axis]) / domain.size()[axis];
+    let (low, high) = if axis == 0 { patch.split_u(t) } else { patch.split_v(t) };
+    let (mut below, mut above) = (domain, domain);
+    below.max[axis] = at;
+    above.min[axis] = at;
+    let over = |b: UvBox, patch: BezierPatch| {
+        let knots = |from: f64, to: f64, degree: usize| {
+            let mut knots = vec![from; degree + 1];
+            knots.resize(2 * (degree + 1), to);
+            knots
+        };
+        let (us, vs) = (knots(b.min.x, b.max.x, p), knots(b.min.y, b.max.y, q));
+        NurbsSurface::new([p, q], us, vs, patch.points, patch.weights).ok()
+    };
+    Some((over(below, low)?, over(above, high)?))
 }
 
 /// Where roots end along one direction: the sides of the box, and the seams of a spline surface between them.

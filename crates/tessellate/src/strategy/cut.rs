@@ -12,12 +12,14 @@
 //! ```
 //!
 //! The borders are then forced into the triangulation of the loops ([`super::constrain`]): whatever is to the left of the loops
-//! is covered exactly once, however cells and loops lie.
+//! is covered exactly once, however cells and loops lie. What is left between borders is constrained Delaunay.
 
 use super::borders::Borders;
 use super::constrain::Constrained;
+use super::plain::mean_metric;
 use super::region::Region;
 use crate::face::FaceWork;
+use crate::metric::Metric;
 use crate::triangulate::Location;
 use chordal_nurbs::{DVec2, UvBox};
 
@@ -46,9 +48,11 @@ pub(crate) struct CutFace {
 
 /// Brings the corners and borders of the cells into `work.mesh`, which holds the triangulated loops.
 pub(crate) fn cut(work: &mut FaceWork<'_, '_>, region: &Region, cells: &[UvBox]) -> CutFace {
+    let metric = mean_metric(work.context.surface, region.uv_box);
+    work.metrics.fill(metric);
     let borders = Borders::new(cells);
     let inside: Vec<bool> = borders.corners.iter().map(|&p| region.contains(p)).collect();
-    let anchors = insert_corners(work, region, &borders, &inside);
+    let anchors = insert_corners(work, region, &borders, &inside, metric);
     let first = work.chart.points.len() as u32;
     let corners = work.mesh.points.len() - first as usize;
     let mut crossings = 0;
@@ -69,7 +73,10 @@ pub(crate) fn cut(work: &mut FaceWork<'_, '_>, region: &Region, cells: &[UvBox])
     wanted.dedup();
     let mut constrained = Constrained::new(&mut work.mesh);
     let dropped = wanted.iter().filter(|&&(p, q)| !constrained.force(p, q)).count();
-    CutFace { fixed: constrained.fixed, corners, crossings, dropped }
+    let fixed = constrained.fixed;
+    work.mesh.flip_all(&work.metrics, &|_, a, b, _| !fixed.contains(&(a.min(b), a.max(b))));
+    work.mesh.changed.clear();
+    CutFace { fixed, corners, crossings, dropped }
 }
 
 fn insert_corners(
@@ -77,13 +84,14 @@ fn insert_corners(
     region: &Region,
     borders: &Borders,
     inside: &[bool],
+    metric: Metric,
 ) -> Vec<Anchor> {
     let mut hint = 0;
     let mut anchors = Vec::with_capacity(inside.len());
     for (i, &p) in borders.corners.iter().enumerate() {
         let anchor = match region.nearest(p, borders.extent[i], SLIVER) {
             Some(chord) => Anchor::Vertex(nearer_end(region, chord, p, borders.extent[i])),
-            None if inside[i] => insert(work, p, &mut hint),
+            None if inside[i] => insert(work, p, metric, &mut hint),
             None => Anchor::None,
         };
         anchors.push(anchor);
@@ -92,11 +100,11 @@ fn insert_corners(
     anchors
 }
 
-fn insert(work: &mut FaceWork<'_, '_>, p: DVec2, hint: &mut u32) -> Anchor {
+fn insert(work: &mut FaceWork<'_, '_>, p: DVec2, metric: Metric, hint: &mut u32) -> Anchor {
     let at = work.mesh.locate(p, *hint);
     let (Location::Inside(t) | Location::OnEdge(t, _)) = at else { return Anchor::None };
     *hint = t;
-    work.insert(p, at).map_or(Anchor::None, Anchor::Vertex)
+    work.insert_in_metric(p, at, metric).map_or(Anchor::None, Anchor::Vertex)
 }
 
 /// The end of a chord that is nearer to `p`, as an index of the chart.

@@ -150,11 +150,15 @@ fn loops_of(edges: &[(u32, u32)]) -> Option<Vec<Vec<u32>>> {
 /// only as far as parameters can be computed, and a triangle of three of them, flat here, stands up in space.
 const ROUNDING: f64 = 1e-7;
 
-/// Counter-clockwise, and higher than rounding.
+/// Triangles lower than this share of their longest side, in a polygon stretched to a square, are slivers: flat in the plane
+/// of parameters they may stand up in space. A polygon that would get one keeps its Delaunay triangles.
+const SLIVER: f64 = 5e-3;
+
+/// Counter-clockwise, and no sliver.
 fn is_sound([a, b, c]: [DVec2; 3], size: DVec2) -> bool {
     let (p, q) = ((b - a) / size, (c - a) / size);
-    let longest = p.length_squared().max(q.length_squared()).max((q - p).length_squared()).sqrt();
-    orient(a, b, c) > 0.0 && p.perp_dot(q) > ROUNDING * longest
+    let longest = p.length_squared().max(q.length_squared()).max((q - p).length_squared());
+    orient(a, b, c) > 0.0 && p.perp_dot(q) > SLIVER * longest
 }
 
 /// No corner turns right, rounding aside.

@@ -2,14 +2,20 @@
 
 use super::Strategy;
 use super::cells::{Cells, Rule};
+use super::chords::coarse_chords;
 use super::cut::cut;
+use super::delaunay::Delaunay;
+use super::grid::{ControlCells, UniformGrid};
 use super::kd::{Binary, Kd};
 use super::node::Measure;
+use super::poles::open_out;
 use super::polygons::{Filling, retriangulate};
+use super::quadtree::Quadtree;
+use super::recursive::Recursive;
 use super::region::Region;
 use crate::chart::Segment;
 use crate::face::FaceWork;
-use crate::options::Bound;
+use crate::options::{Bound, Options};
 use crate::prove::{Fault, Prover, Verdict};
 use crate::triangulate::Triangulation;
 use chordal_nurbs::{DVec2, UvBox};
@@ -34,7 +40,18 @@ pub(crate) trait Method {
 
     /// Makes the places finer that the proof found too coarse; false where nothing can be done.
     fn refine(&mut self, coarse: &[DVec2]) -> bool;
+
+    /// Chords (edge, index) that the method itself finds too coarse.
+    fn coarse_chords(&self, _work: &FaceWork<'_, '_>) -> Vec<(u32, u32)> {
+        Vec::new()
+    }
+
+    /// The cells, to be drawn.
+    fn drawing(&self) -> Vec<UvBox>;
 }
+
+/// Asked now and then with the number of things made so far; an error ends the work on the face.
+pub(crate) type Check<'c> = &'c dyn Fn(usize) -> Result<(), String>;
 
 /// Cells cut with the loops.
 struct ByCells {
@@ -44,34 +61,57 @@ struct ByCells {
     filling: Filling,
     tolerance: f64,
     measure: Measure,
+    /// How often all cells were halved at once.
+    halvings: usize,
 }
 
+/// Uniform subdivisions are halved at most this often: each time costs four times the triangles, and what is still too
+/// coarse then lies where loops cut cells, which smaller cells do not mend.
+const HALVINGS: usize = 1;
+
 impl Method for ByCells {
-    fn build(
-        &mut self,
-        work: &mut FaceWork<'_, '_>,
-        check: &dyn Fn(usize) -> Result<(), String>,
-    ) -> Result<(), String> {
+    fn build(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<(), String> {
         self.cells.refine(&*self.rule, &self.region, self.tolerance, self.measure, check)?;
-        let met: Vec<UvBox> = self.cells.leaves.iter().filter(|l| l.met).map(|l| l.bounds).collect();
+        let met = self.drawing();
         let found = cut(work, &self.region, &met);
         retriangulate(&mut work.mesh, &found.fixed, self.filling, &mut work.trace);
+        let opened = open_out(work);
         work.trace.add(self.rule.name(), met.len());
         work.trace.add("corners of cells", found.corners);
         work.trace.add("borders cut by loops", found.crossings);
         work.trace.add("borders given up", found.dropped);
+        work.trace.add("flips at poles", opened);
         Ok(())
     }
 
     fn refine(&mut self, coarse: &[DVec2]) -> bool {
+        if self.rule.is_uniform() {
+            self.halvings += 1;
+            if self.halvings > HALVINGS {
+                return false;
+            }
+        }
         self.cells.cut_at(coarse, &*self.rule, &self.region, self.measure)
+    }
+
+    fn coarse_chords(&self, work: &FaceWork<'_, '_>) -> Vec<(u32, u32)> {
+        coarse_chords(work, &self.cells, &*self.rule)
+    }
+
+    fn drawing(&self) -> Vec<UvBox> {
+        self.cells.leaves.iter().filter(|l| l.met).map(|l| l.bounds).collect()
     }
 }
 
 fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<Box<dyn Method>, String> {
-    let rule: Box<dyn Rule> = match strategy {
-        Strategy::Kd(cut) => Box::new(Kd(cut)),
-        Strategy::Binary(cut) => Box::new(Binary(cut)),
+    let (rule, filling): (Box<dyn Rule>, Filling) = match strategy {
+        Strategy::Kd(cut) => (Box::new(Kd(cut)), Filling::FanOrMonotone),
+        Strategy::Binary(cut) => (Box::new(Binary(cut)), Filling::FanOrMonotone),
+        Strategy::UniformGrid => (Box::new(UniformGrid), Filling::FanOrMonotone),
+        Strategy::ControlCells { per_cell } => (Box::new(ControlCells { per_cell }), Filling::FanOrMonotone),
+        Strategy::Recursive => (Box::new(Recursive), Filling::FanOrMonotone),
+        Strategy::Quadtree(stretch) => (Box::new(Quadtree(stretch)), Filling::Delaunay),
+        Strategy::Delaunay(fill) => return Ok(Box::new(Delaunay::new(work, fill))),
         Strategy::Default => return Err("the default strategy has no method of its own".into()),
     };
     let region = Region::new(&work.chart);
@@ -79,7 +119,7 @@ fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<B
     let mut cells = Cells::new(work.context.surface, region.uv_box, tolerance)?;
     cells.begin(&*rule, &region, tolerance);
     let measure = if bound == Bound::Proven { Measure::Conservative } else { Measure::Estimated };
-    Ok(Box::new(ByCells { region, cells, rule, filling: Filling::FanOrMonotone, tolerance, measure }))
+    Ok(Box::new(ByCells { region, cells, rule, filling, tolerance, measure, halvings: 0 }))
 }
 
 /// Fills a face whose loops are triangulated.
@@ -89,11 +129,24 @@ fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<B
 pub(crate) fn fill(
     work: &mut FaceWork<'_, '_>,
     prover: &mut Prover<'_>,
-    strategy: Strategy,
+    options: &Options,
+) -> Result<Verdict, String> {
+    let mut method = method(work, options.strategy, options.bound)?;
+    let verdict = refine(work, prover, &mut *method, options.bound);
+    if options.record_cells {
+        work.cells = method.drawing();
+    }
+    verdict
+}
+
+fn refine(
+    work: &mut FaceWork<'_, '_>,
+    prover: &mut Prover<'_>,
+    method: &mut dyn Method,
     bound: Bound,
 ) -> Result<Verdict, String> {
     let boundary = work.mesh.clone();
-    let mut method = method(work, strategy, bound)?;
+    let mut at_boundary = usize::MAX;
     for round in 0..ROUNDS {
         restore(work, &boundary);
         work.trace = super::trace::Trace::default();
@@ -105,6 +158,10 @@ pub(crate) fn fill(
             }
         };
         method.build(work, &check)?;
+        let finer = if work.context.last_resort { Vec::new() } else { method.coarse_chords(work) };
+        if !finer.is_empty() {
+            return Ok(Verdict::Finer(finer));
+        }
         work.trace.add("rounds of refinement after the proof", round);
         if bound == Bound::Estimated {
             return Ok(prover.proven(f64::NAN));
@@ -116,9 +173,11 @@ pub(crate) fn fill(
         if judged.coarse.is_empty() {
             return Ok(prover.proven(judged.error));
         }
-        if !method.refine(&judged.coarse) {
+        // Inside, smaller cells always help in the end. Where a long chord meets small cells they need not.
+        if !judged.is_inside && judged.coarse.len() >= at_boundary || !method.refine(&judged.coarse) {
             break;
         }
+        at_boundary = if judged.is_inside { usize::MAX } else { judged.coarse.len() };
     }
     let before = work.mesh.triangles.len();
     let verdict = prover.refine(work)?;
@@ -141,12 +200,14 @@ struct Judged {
     error: f64,
     /// The middles of triangles that must become smaller.
     coarse: Vec<DVec2>,
+    /// One of them has no corner on the boundary.
+    is_inside: bool,
     /// Edges or seams must become finer first.
     request: Option<Verdict>,
 }
 
 fn judge(work: &FaceWork<'_, '_>, prover: &mut Prover<'_>) -> Result<Judged, String> {
-    let mut judged = Judged { error: 0.0, coarse: Vec::new(), request: None };
+    let mut judged = Judged { error: 0.0, coarse: Vec::new(), is_inside: false, request: None };
     let mut chords = Vec::new();
     for t in 0..work.mesh.triangles.len() as u32 {
         if t % 256 == 255 {
@@ -164,6 +225,8 @@ fn judge(work: &FaceWork<'_, '_>, prover: &mut Prover<'_>) -> Result<Judged, Str
             Fault::Inside(_) | Fault::Fold(_) => {
                 let [a, b, c] = work.mesh.corners(t);
                 judged.coarse.push((a + b + c) / 3.0);
+                let first_inside = work.chart.points.len() as u32;
+                judged.is_inside |= work.mesh.triangles[t as usize].iter().all(|&v| v >= first_inside);
             }
         }
     }

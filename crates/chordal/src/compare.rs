@@ -1,0 +1,167 @@
+//! The same model by several strategies, side by side.
+
+mod measure;
+mod plot;
+
+use crate::job::{MeshedPart, mesh_parts, read_model};
+use crate::resolve::{Resolved, resolve};
+use crate::{JobError, JobOptions};
+use chordal_brep::Model;
+use chordal_tessellate::{Bound, Cancel, Strategy};
+use serde::Serialize;
+use std::path::Path;
+use std::time::Instant;
+
+pub use plot::plot;
+
+/// The name and version of the schema of [`Comparison`].
+pub const COMPARE_SCHEMA: &str = "chordal-compare/1";
+
+/// All strategies on one model; lengths in millimetres.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Comparison {
+    pub schema: String,
+    pub model: String,
+    pub tolerance: f64,
+    /// In degrees; `null`: no limit.
+    pub angle: Option<f64>,
+    pub faces: usize,
+    pub rows: Vec<ComparedRow>,
+}
+
+/// One strategy with one kind of bound.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ComparedRow {
+    pub strategy: String,
+    pub bound: String,
+    /// As placed.
+    pub triangles: usize,
+    /// Chords of the model's edges, as placed.
+    pub edges: usize,
+    /// Wall time of everything from the exact model to the mesh.
+    pub seconds: f64,
+    /// Largest proven error; `null` where a face has no proof.
+    pub proven_error: Option<f64>,
+    /// Largest distance of the surface from its own triangle over samples of all triangles, looseness of the file included.
+    pub measured_error: f64,
+    /// Triangles over the fewest that the tolerance allows (docs/report.md).
+    pub ratio: f64,
+    pub failed_faces: usize,
+    /// Rounds in which faces asked for finer edges, the most of any part.
+    pub rounds: usize,
+    /// Which parts of the tessellator ran.
+    pub stages: Vec<StageEntry>,
+}
+
+/// One part of the tessellator.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, serde::Deserialize)]
+pub struct StageEntry {
+    pub name: String,
+    /// Faces for which it ran; a face that is placed several times counts once.
+    pub faces: usize,
+    /// What it made in all of them.
+    pub count: usize,
+}
+
+/// Meshes the model in `input` once for every strategy and bound. The lower bound is that of the first row: it is a
+/// property of the model, but for rounding.
+///
+/// # Errors
+/// Where the model cannot be read or the options make no sense for it.
+pub fn compare(
+    input: &Path,
+    options: &JobOptions,
+    strategies: &[Strategy],
+    bounds: &[Bound],
+    cancel: &Cancel,
+    tell: &mut dyn FnMut(&ComparedRow),
+) -> Result<Comparison, JobError> {
+    let model = read_model(input)?;
+    let mut comparison = Comparison {
+        schema: COMPARE_SCHEMA.into(),
+        model: input.display().to_string(),
+        angle: options.angle.map(f64::to_degrees),
+        faces: model.placed_faces(),
+        ..Comparison::default()
+    };
+    let mut lower_bound = None;
+    for &strategy in strategies {
+        for &bound in bounds {
+            let options = options.clone().with_strategy(strategy).with_bound(bound);
+            let resolved = resolve(&model, &options, None, input, cancel)?;
+            comparison.tolerance = resolved.tolerance;
+            let started = Instant::now();
+            let parts = mesh_parts(&model, &resolved, cancel, &|_| ());
+            let seconds = started.elapsed().as_secs_f64();
+            if cancel.is_cancelled() {
+                return Err(JobError::Cancelled { path: input.to_owned() });
+            }
+            let fewest = *lower_bound.get_or_insert_with(|| fewest(&resolved, &parts));
+            let row = ComparedRow {
+                strategy: strategy.name().into(),
+                bound: crate::names::bound_name(bound).into(),
+                seconds,
+                ..row(&model, &resolved, &parts, fewest)
+            };
+            tell(&row);
+            comparison.rows.push(row);
+        }
+    }
+    Ok(comparison)
+}
+
+/// Parts that are placed, with how often.
+fn placed<'a>(
+    resolved: &'a Resolved,
+    parts: &'a [MeshedPart],
+) -> impl Iterator<Item = (usize, &'a MeshedPart, usize, f64)> {
+    let uses = resolved.uses.iter().zip(parts).enumerate();
+    uses.filter(|(_, (u, _))| u.instances > 0).map(|(i, (u, part))| (i, part, u.instances, u.scale))
+}
+
+fn fewest(resolved: &Resolved, parts: &[MeshedPart]) -> f64 {
+    placed(resolved, parts)
+        .map(|(_, part, n, _)| n as f64 * part.report.faces.iter().map(|f| f.lower_bound).sum::<f64>())
+        .sum()
+}
+
+fn row(model: &Model, resolved: &Resolved, parts: &[MeshedPart], fewest: f64) -> ComparedRow {
+    let mut row = ComparedRow { proven_error: Some(0.0), ..ComparedRow::default() };
+    for (i, part, instances, scale) in placed(resolved, parts) {
+        row.triangles += instances * part.mesh.triangle_count();
+        row.edges += instances * part.mesh.edges.iter().map(|e| e.len().saturating_sub(1)).sum::<usize>();
+        row.rounds = row.rounds.max(part.report.rounds);
+        for face in &part.report.faces {
+            row.failed_faces += instances * usize::from(face.failed.is_some());
+            let proven = Some(face.proven_error * scale).filter(|e| e.is_finite());
+            if face.triangles > 0 {
+                row.proven_error = row.proven_error.zip(proven).map(|(a, b)| f64::max(a, b));
+            }
+        }
+        row.measured_error =
+            row.measured_error.max(scale * measure::largest_deviation(&model.parts[i], &part.mesh));
+        add_stages(&mut row.stages, part);
+    }
+    row.ratio = row.triangles as f64 / fewest.max(1.0);
+    row
+}
+
+/// Books the parts that ran for the faces of one part of the model.
+pub(crate) fn add_stages(stages: &mut Vec<StageEntry>, part: &MeshedPart) {
+    for (name, count) in part.report.faces.iter().flat_map(|f| f.trace.parts()) {
+        match stages.iter_mut().find(|s| s.name == name) {
+            Some(stage) => {
+                stage.faces += 1;
+                stage.count += count;
+            }
+            None => stages.push(StageEntry { name: name.into(), faces: 1, count }),
+        }
+    }
+}
+
+impl Comparison {
+    /// As JSON, with a line break at the end.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("a comparison has string keys only") + "\n"
+    }
+}

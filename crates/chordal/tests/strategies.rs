@@ -1,0 +1,89 @@
+//! Every strategy on the whole corpus: closed where the file is, within tolerance where proven, and made by its own parts.
+
+use chordal::{Bound, Job, JobOptions, Report, Strategy, Tolerance};
+use std::path::{Path, PathBuf};
+
+fn corpus(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step")
+}
+
+fn mesh(name: &str, strategy: Strategy, bound: Bound) -> Result<Report, String> {
+    let options = JobOptions::default()
+        .with_tolerance(Tolerance::Percent(0.5))
+        .with_strategy(strategy)
+        .with_bound(bound);
+    chordal::run(&Job::new(corpus(name)).with_options(options)).map(|o| o.report).map_err(|e| e.to_string())
+}
+
+/// Models whose every triangle counts for the time that a test may take.
+const SLOW: &[&str] = &["degree_100", "degree_25", "degree_mixed"];
+
+fn models() -> Vec<String> {
+    let index = std::fs::read_to_string(corpus("x").with_file_name("INDEX.tsv")).expect("the corpus");
+    index.lines().skip(1).filter_map(|l| l.split('\t').next()).map(str::to_owned).collect()
+}
+
+#[test]
+fn every_strategy_meshes_what_the_default_meshes() {
+    let mut wrong = Vec::new();
+    for name in models().iter().filter(|n| !SLOW.contains(&n.as_str())) {
+        let Ok(default) = mesh(name, Strategy::Default, Bound::Proven) else { continue };
+        if !default.clean {
+            continue;
+        }
+        for entry in Strategy::entries().iter().skip(1) {
+            match mesh(name, entry.strategy, Bound::Proven) {
+                Ok(report) if report.clean && report.watertight == default.watertight => {}
+                Ok(report) => wrong.push(format!("{name}, {}: {}", entry.name, report.undone.join("; "))),
+                Err(error) => wrong.push(format!("{name}, {}: {error}", entry.name)),
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} of them:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn estimated_meshes_are_closed_too_and_have_fewer_triangles() {
+    for name in ["bracket", "fillet_bspline", "torus_hole", "blade"] {
+        for entry in Strategy::entries() {
+            let estimated = mesh(name, entry.strategy, Bound::Estimated).expect("a mesh");
+            assert!(estimated.watertight, "{name}, {}: {:?}", entry.name, estimated.undone);
+            let proven = mesh(name, entry.strategy, Bound::Proven).expect("a mesh");
+            assert!(estimated.triangles <= proven.triangles, "{name}, {}", entry.name);
+        }
+    }
+}
+
+/// The part that only this strategy has, by its name in the report.
+fn own_part(strategy: &str) -> &'static str {
+    match strategy {
+        "default" => "points in rows",
+        "kd-midpoint" => "kd-tree cells, cut half way",
+        "kd-worst" => "kd-tree cells, cut at the worst point",
+        "binary-midpoint" => "binary cells, cut half way",
+        "binary-worst" => "binary cells, cut where they bend most",
+        "grid" => "uniform grid cells",
+        "cells" => "parts of control cells",
+        "recursive" => "recursively halved Bézier patches",
+        "quadtree" | "quadtree-eq3" => "quadtree leaves",
+        "delaunay-uniform" => "uniform fill points",
+        "delaunay-adaptive" => "adaptive fill points",
+        other => panic!("{other} has no part in this test"),
+    }
+}
+
+#[test]
+fn each_strategy_runs_its_own_parts_and_no_others() {
+    let names: Vec<&str> = Strategy::entries().iter().map(|e| e.name).collect();
+    for entry in Strategy::entries() {
+        let report = mesh("fillet_bspline", entry.strategy, Bound::Proven).expect("a mesh");
+        let ran = |part: &str| report.stages.iter().find(|s| s.name == part);
+        let own = own_part(entry.name);
+        let stage =
+            ran(own).unwrap_or_else(|| panic!("{}: {own} did not run: {:?}", entry.name, report.stages));
+        assert!(stage.faces > 0 && stage.count > 0);
+        for other in names.iter().map(|n| own_part(n)).filter(|&other| other != own) {
+            assert!(ran(other).is_none(), "{}: {other} ran", entry.name);
+        }
+    }
+}

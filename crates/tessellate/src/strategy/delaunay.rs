@@ -1,0 +1,197 @@
+//! Fill points and a Delaunay triangulation of them with the loops.
+//!
+//! Source: the survey of the Blender wiki, "Delaunay Triangulation". Points are strewn over the face, those outside its loops are
+//! discarded, and the rest is triangulated with the loops as constraints; nothing but the largest smallest angle decides
+//! about the triangles. Uniform points form a grid in the plane of parameters (as many lines as the uniform grid
+//! would have). Adaptive ones go where a triangle of those before deviates too much, its longest side half way inside, as
+//! Sheng and Hirsch 1992 restrict triangles by deviation. Neither bounds an error: the common proof does.
+//!
+//! Angles are measured in the plane of parameters, stretched in each direction as the surface is on average.
+
+use super::derivatives::SecondNorms;
+use super::grid::fewest;
+use super::plain::mean_metric;
+use super::poles::open_out;
+use super::region::Region;
+use super::run::{Check, Method};
+use crate::face::FaceWork;
+use crate::metric::Metric;
+use crate::surface::FaceSurface;
+use crate::triangulate::{Location, NONE};
+use chordal_nurbs::{DVec2, UvBox};
+
+/// Where fill points go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// On a grid in the plane of parameters.
+    Uniform,
+    /// Where triangles deviate.
+    Adaptive,
+}
+
+/// A face filled by points.
+pub(crate) struct Delaunay {
+    region: Region,
+    fill: Fill,
+    tolerance: f64,
+    /// Lines of the uniform grid.
+    lines: [usize; 2],
+    /// Points of the adaptive fill so far.
+    points: Vec<DVec2>,
+    metric: Metric,
+}
+
+/// Points nearer to a chord than this share of the grid's step are left out.
+const BESIDE: f64 = 0.3;
+
+/// Lines of the first grid where nothing is known about the surface.
+const FIRST_LINES: usize = 8;
+
+/// No grid has more lines in one direction.
+const MOST_LINES: usize = 2000;
+
+impl Delaunay {
+    pub fn new(work: &FaceWork<'_, '_>, fill: Fill) -> Self {
+        let region = Region::new(&work.chart);
+        let surface = work.context.surface;
+        let tolerance = work.limits.tolerance;
+        let lines = first_lines(surface, region.uv_box, tolerance);
+        let metric = mean_metric(surface, region.uv_box);
+        Self { region, fill, tolerance, lines, points: Vec::new(), metric }
+    }
+
+    fn insert(&self, work: &mut FaceWork<'_, '_>, p: DVec2, hint: &mut u32) -> bool {
+        let at = work.mesh.locate(p, *hint);
+        let (Location::Inside(t) | Location::OnEdge(t, _)) = at else { return false };
+        *hint = t;
+        work.insert_in_metric(p, at, self.metric).is_some()
+    }
+
+    fn grid(&self) -> impl Iterator<Item = DVec2> + use<> {
+        let ([n, m], b) = (self.lines, self.region.uv_box);
+        (1..m).flat_map(move |j| {
+            (1..n).map(move |i| b.min + b.size() * DVec2::new(i as f64 / n as f64, j as f64 / m as f64))
+        })
+    }
+
+    fn fill_uniformly(&self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<usize, String> {
+        let step = self.region.uv_box.size() / DVec2::new(self.lines[0] as f64, self.lines[1] as f64);
+        let mut hint = 0;
+        let mut count = 0;
+        for p in self.grid() {
+            if self.region.contains(p)
+                && self.region.nearest(p, step, BESIDE).is_none()
+                && self.insert(work, p, &mut hint)
+            {
+                count += 1;
+                if count % 256 == 0 {
+                    check(count)?;
+                }
+            }
+        }
+        Ok(count)
+    }
+
+    /// Puts points into triangles that deviate, and into those that come of it, until none does.
+    fn fill_adaptively(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<usize, String> {
+        let mut hint = 0;
+        for p in std::mem::take(&mut self.points) {
+            if self.insert(work, p, &mut hint) {
+                self.points.push(p);
+            }
+        }
+        work.mesh.changed.clear();
+        let mut queue: Vec<u32> = (0..work.mesh.triangles.len() as u32).collect();
+        let mut steps = 0usize;
+        while let Some(t) = queue.pop() {
+            steps += 1;
+            if steps.is_multiple_of(256) {
+                check(self.points.len())?;
+            }
+            let Some(p) = self.too_far(work, t) else { continue };
+            let mut hint = t;
+            if self.insert(work, p, &mut hint) {
+                self.points.push(p);
+                queue.append(&mut work.mesh.changed);
+                queue.extend(
+                    (work.mesh.triangles.len() as u32).saturating_sub(2)..work.mesh.triangles.len() as u32,
+                );
+            }
+        }
+        Ok(self.points.len())
+    }
+
+    /// Where a triangle deviates more than the tolerance at its middle: the place for a point.
+    fn too_far(&self, work: &FaceWork<'_, '_>, t: u32) -> Option<DVec2> {
+        let c = work.mesh.triangles[t as usize];
+        let [a, b, d] = c.map(|v| work.xyz[v as usize]);
+        let n = (b - a).cross(d - a).try_normalize()?;
+        let uv = work.mesh.corners(t);
+        let middle = (uv[0] + uv[1] + uv[2]) / 3.0;
+        let sides = [0, 1, 2].map(|i| uv[(i + 1) % 3].midpoint(uv[(i + 2) % 3]));
+        let far = |p: DVec2| (work.context.surface.point(p) - a).dot(n).abs();
+        let inner = |i: &usize| work.mesh.neighbors[t as usize][*i] != NONE;
+        let deviation = sides
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| inner(i))
+            .map(|(_, &p)| far(p))
+            .fold(far(middle), f64::max);
+        if deviation <= self.tolerance {
+            return None;
+        }
+        let length = |i: usize| self.metric.length(uv[(i + 1) % 3] - uv[(i + 2) % 3]);
+        let longest = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j)))?;
+        Some(if inner(&longest) { sides[longest] } else { middle })
+    }
+}
+
+impl Method for Delaunay {
+    fn build(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<(), String> {
+        work.metrics.fill(self.metric);
+        work.mesh.flip_all(&work.metrics, &|_, _, _, _| true);
+        let count = match self.fill {
+            Fill::Uniform => self.fill_uniformly(work, check)?,
+            Fill::Adaptive => self.fill_adaptively(work, check)?,
+        };
+        work.mesh.changed.clear();
+        let opened = open_out(work);
+        work.trace.add("flips at poles", opened);
+        let name = match self.fill {
+            Fill::Uniform => "uniform fill points",
+            Fill::Adaptive => "adaptive fill points",
+        };
+        work.trace.add(name, count);
+        work.trace.add("Delaunay triangles", work.mesh.triangles.len());
+        Ok(())
+    }
+
+    fn refine(&mut self, coarse: &[DVec2]) -> bool {
+        match self.fill {
+            Fill::Uniform => {
+                let before = self.lines;
+                self.lines = self.lines.map(|n| (n + n.div_ceil(2)).min(MOST_LINES));
+                self.lines != before
+            }
+            Fill::Adaptive => {
+                self.points.extend_from_slice(coarse);
+                true
+            }
+        }
+    }
+
+    fn drawing(&self) -> Vec<UvBox> {
+        Vec::new()
+    }
+}
+
+/// As many lines as a uniform grid would have.
+fn first_lines(surface: &FaceSurface<'_>, uv_box: UvBox, tolerance: f64) -> [usize; 2] {
+    let Ok(root) = surface.surface.to_nurbs(uv_box) else { return [FIRST_LINES; 2] };
+    let norms = SecondNorms::of_surface(&root);
+    if !norms.error(1.0, 1.0).is_finite() {
+        return [FIRST_LINES; 2];
+    }
+    let (n, m) = fewest(&norms.over(root.domain().size()), tolerance);
+    [n, m]
+}
