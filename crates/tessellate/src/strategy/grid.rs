@@ -24,8 +24,12 @@ pub(crate) struct ControlCells {
     pub per_cell: u32,
 }
 
-/// No grid is finer than this in one direction.
+/// No grid is finer than this in one direction, and none has more cells.
 const MOST_LINES: f64 = 2000.0;
+const MOST_CELLS: f64 = 250_000.0;
+
+/// Lines where the bound asks for more.
+const BEYOND: usize = 32;
 
 impl Rule for UniformGrid {
     fn name(&self) -> &'static str {
@@ -108,19 +112,20 @@ pub(crate) fn fewest(norms: &SecondNorms, tolerance: f64) -> (usize, usize) {
         let b = rest / (w + (w * w + norms.vv * rest).sqrt());
         (1.0 / b).ceil().max(1.0)
     };
-    let mut best = (MOST_LINES, MOST_LINES);
+    let mut best = (f64::INFINITY, f64::INFINITY);
     let mut n = 1.0;
     while n <= MOST_LINES {
         let m = rows(n);
         if n * m < best.0 * best.1 {
-            best = (n, m.min(MOST_LINES));
+            best = (n, m);
         }
         if m <= 1.0 {
             break;
         }
         n += 1.0;
     }
-    (best.0 as usize, best.1 as usize)
+    // Beyond reach: a bound this loose says nothing, and the proof has the last word.
+    if best.0 * best.1 <= MOST_CELLS { (best.0 as usize, best.1 as usize) } else { (BEYOND, BEYOND) }
 }
 
 /// Parts per side of every control cell.
@@ -134,8 +139,12 @@ fn needed(root: &NurbsSurface, lines: &[Vec<f64>; 2], tolerance: f64) -> usize {
         worst.max(SecondNorms::of_patch(patch).error(du / size.x, dv / size.y))
     });
     let parts = (worst / tolerance).sqrt().ceil();
-    let most = MOST_LINES / lines[0].len().max(lines[1].len()) as f64;
-    parts.clamp(1.0, most.max(1.0)) as usize
+    let [m, n] = [0, 1].map(|axis| lines[axis].len() as f64);
+    if m * n * parts * parts <= MOST_CELLS {
+        parts.max(1.0) as usize
+    } else {
+        ((BEYOND as f64 / m.max(n)).ceil() as usize).max(1)
+    }
 }
 
 #[cfg(test)]
