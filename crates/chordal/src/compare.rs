@@ -42,7 +42,7 @@ pub struct ComparedRow {
     pub seconds: f64,
     /// Largest proven error; `null` where a face has no proof.
     pub proven_error: Option<f64>,
-    /// Largest distance of the surface from its own triangle over samples of all triangles, looseness of the file included.
+    /// Largest distance of the surfaces from the mesh over samples of all triangles, looseness of the file included.
     pub measured_error: f64,
     /// Triangles over the fewest that the tolerance allows (docs/report.md).
     pub ratio: f64,

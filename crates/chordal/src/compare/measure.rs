@@ -1,44 +1,50 @@
 //! How far a mesh lies from its surfaces, measured.
+//!
+//! Samples lie inside the triangles of the plane of parameters: between a trimming curve and its chord there may be surface that
+//! is not the face's. A sample that its own triangle does not come near may be covered by another one.
 
+use chordal_audit::TriangleTree;
 use chordal_brep::{FaceGeometry, Part};
 use chordal_mesh::{FaceMesh, PartMesh};
 use chordal_nurbs::{DVec3, Surface, Wrap};
 use rayon::prelude::*;
 
-/// Samples of a triangle: its middle, the middles of its sides, and points between.
-const WEIGHTS: [[f64; 3]; 10] = [
+/// Samples of a triangle: its middle, points beside the middles of its sides, and points towards its corners.
+const WEIGHTS: [[f64; 3]; 7] = [
     [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
-    [0.5, 0.5, 0.0],
-    [0.0, 0.5, 0.5],
-    [0.5, 0.0, 0.5],
+    [0.45, 0.45, 0.1],
+    [0.1, 0.45, 0.45],
+    [0.45, 0.1, 0.45],
     [0.6, 0.2, 0.2],
     [0.2, 0.6, 0.2],
     [0.2, 0.2, 0.6],
-    [0.4, 0.4, 0.2],
-    [0.2, 0.4, 0.4],
-    [0.4, 0.2, 0.4],
 ];
 
-/// The largest distance, over samples of every triangle's piece of the surface, from that triangle; in the part's units.
+/// The largest distance of samples of the surfaces from the mesh of a part, in the part's units.
 pub(super) fn largest_deviation(part: &Part, mesh: &PartMesh) -> f64 {
+    let corners =
+        |face: &FaceMesh, t: &[u32; 3]| t.map(|c| mesh.positions[face.corners[c as usize].position as usize]);
+    let triangles = mesh.faces.iter().flat_map(|f| f.triangles.iter().map(move |t| corners(f, t)));
+    let tree = TriangleTree::new(triangles.collect());
     mesh.faces
         .par_iter()
         .map(|face| match part.faces.get(face.face as usize).map(|f| &f.geometry) {
-            Some(FaceGeometry::Surface(surface)) => deviation(surface, face, mesh),
+            Some(FaceGeometry::Surface(surface)) => deviation(surface, face, mesh, &tree),
             _ => 0.0,
         })
         .reduce(|| 0.0, f64::max)
 }
 
-fn deviation(surface: &Surface, face: &FaceMesh, mesh: &PartMesh) -> f64 {
+fn deviation(surface: &Surface, face: &FaceMesh, mesh: &PartMesh, tree: &TriangleTree) -> f64 {
     let wrap = Wrap::of(surface);
     face.triangles.iter().fold(0.0, |largest, triangle| {
         let corners = triangle.map(|c| face.corners[c as usize]);
         let xyz = corners.map(|c| mesh.positions[c.position as usize]);
         WEIGHTS.iter().fold(largest, |largest: f64, w| {
             let uv = corners[0].uv * w[0] + corners[1].uv * w[1] + corners[2].uv * w[2];
-            let d = distance(wrap.point(surface, uv), xyz);
-            if d.is_finite() { largest.max(d) } else { largest }
+            let p = wrap.point(surface, uv);
+            let own = distance(p, xyz);
+            if own.is_finite() && own > largest { largest.max(tree.distance(p, own)) } else { largest }
         })
     })
 }

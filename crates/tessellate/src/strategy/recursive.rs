@@ -9,7 +9,7 @@ use super::cells::{Rule, Split};
 use super::derivatives::SecondNorms;
 use super::node::Measure;
 use super::quadtree::at_knots;
-use chordal_nurbs::{BezierPatch, NurbsSurface};
+use chordal_nurbs::{DVec2, NurbsSurface};
 
 /// Recursive subdivision.
 #[derive(Clone, Copy, Debug)]
@@ -25,17 +25,14 @@ impl Rule for Recursive {
     }
 
     fn cuts(&self, piece: &NurbsSurface, tolerance: f64, measure: Measure) -> Vec<Split> {
-        // What is left after the knots is one Bézier patch, its points as they are.
-        let patch = BezierPatch {
-            degree: piece.degree(),
-            points: piece.points().to_vec(),
-            weights: piece.weights().map(<[f64]>::to_vec),
-        };
         let norms = match measure {
-            Measure::Conservative => SecondNorms::of_patch(&patch),
-            Measure::Estimated => sampled(&patch),
+            // A knot that lies too near to a border to be cut at leaves more than one patch.
+            Measure::Conservative => SecondNorms::of_surface(piece),
+            Measure::Estimated => sampled(piece),
         };
-        if norms.error(1.0, 1.0) <= tolerance {
+        let norms = norms.over(piece.domain().size());
+        // Nothing is gained by halving what is not a number.
+        if norms.error(1.0, 1.0) <= tolerance || norms.error(1.0, 1.0).is_nan() {
             return Vec::new();
         }
         let axis = usize::from(norms.vv > norms.uu);
@@ -44,9 +41,10 @@ impl Rule for Recursive {
 }
 
 /// Norms at the corners and in the middle: no bound.
-fn sampled(patch: &BezierPatch) -> SecondNorms {
+fn sampled(piece: &NurbsSurface) -> SecondNorms {
+    let domain = piece.domain();
     [(0., 0.), (1., 0.), (0., 1.), (1., 1.), (0.5, 0.5)].iter().fold(SecondNorms::default(), |m, &(u, v)| {
-        let jet = patch.jet((u, v).into());
+        let jet = piece.jet(domain.min + domain.size() * DVec2::new(u, v));
         m.max(SecondNorms { uu: jet.duu.length(), uv: jet.duv.length(), vv: jet.dvv.length() })
     })
 }
