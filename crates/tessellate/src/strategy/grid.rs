@@ -169,16 +169,16 @@ mod tests {
 
     #[test]
     fn a_cylinder_patch_is_cut_in_one_direction_only() {
-        // z = u², straight in v: M_uu = 2, so n = ⌈√(2/8ε)⌉ = 5 for ε = 0.01.
+        // z = u², straight in v: M_uu = 2, so n = ⌈√(2/8ε)⌉ = 5 for ε = 0.011.
         let rows = [(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)];
         let points = rows.iter().flat_map(|&(u, z)| [0.0, 1.0].map(|v| DVec3::new(u, v, z))).collect();
         let knots = vec![0., 0., 0., 1., 1., 1.];
         let s = NurbsSurface::new([2, 1], knots, vec![0., 0., 1., 1.], points, None).expect("valid");
-        let cuts = UniformGrid.first_cuts(&s, 0.01);
+        let cuts = UniformGrid.first_cuts(&s, 0.011);
         assert_eq!(cuts.len(), 4);
         assert!(cuts.iter().all(|c| c.axis == 0));
-        // Two control cells along u of width ½: the worst has error ⅛·2·¼ = 1/16, so ⌈√6.25⌉ = 3 parts; v gets as many.
-        let cuts = ControlCells { per_cell: 0 }.first_cuts(&s, 0.01);
+        // Two control cells along u of width ½: the worst has error ⅛·2·¼ = 1/16, so ⌈√5.7⌉ = 3 parts; v gets as many.
+        let cuts = ControlCells { per_cell: 0 }.first_cuts(&s, 0.011);
         assert_eq!(cuts.iter().filter(|c| c.axis == 0).count(), 5);
     }
 }
