@@ -6,7 +6,7 @@ use chordal_read::{read_bytes, read_file};
 use std::path::PathBuf;
 
 /// Folder in the corpus and suffix of its files.
-const KINDS: [(&str, &str); 3] = [("brep", "brep"), ("iv", "iv"), ("x3d", "x3d")];
+const KINDS: [(&str, &str); 4] = [("brep", "brep"), ("iges", "igs"), ("iv", "iv"), ("x3d", "x3d")];
 
 fn corpus(kind: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(kind)

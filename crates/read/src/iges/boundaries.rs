@@ -4,7 +4,7 @@ use super::curves::{Segment, Segment2, segments, segments2};
 use super::document::{Doc, Ix, Res};
 use super::surfaces::Patch;
 use chordal_brep::Pcurve;
-use chordal_nurbs::{Curve2, DAffine3, DVec2, DVec3, Range};
+use chordal_nurbs::{Curve2, DAffine3, DVec2, DVec3, Range, SurfaceInverter};
 use std::sync::Arc;
 
 /// A piece of a boundary in space, run backwards unless `forward`.
@@ -14,6 +14,8 @@ pub(crate) struct ModelUse {
     pub forward: bool,
     /// The same piece in parameter space, start to start.
     pub pcurve: Option<Pcurve>,
+    /// Both run at the same pace: equal shares of their ranges are one point.
+    pub paced: bool,
 }
 
 /// A piece of a boundary in parameter space.
@@ -130,7 +132,7 @@ fn model_curve(doc: &Doc<'_>, curve: Option<Ix>, by: &DAffine3, forward: bool) -
     let Some(curve) = curve else { return Ok(Vec::new()) };
     let mut all: Vec<ModelUse> = segments(doc, curve, by)?
         .into_iter()
-        .map(|segment| ModelUse { segment, forward, pcurve: None })
+        .map(|segment| ModelUse { segment, forward, pcurve: None, paced: false })
         .collect();
     if !forward {
         all.reverse();
@@ -154,10 +156,13 @@ fn parameter_curve(doc: &Doc<'_>, curve: Option<Ix>, patch: &Patch) -> Res<Vec<P
 const PROBES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// How far apart two descriptions of a boundary may be: as a part of the boundary's size.
-const LOOSE: f64 = 0.02;
+pub(crate) const LOOSE: f64 = 0.02;
 
 /// A piece's ends in space and in parameter space belong together within this part of its length.
 const SAME_END: f64 = 0.05;
+
+/// Two curves run at the same pace where equal shares are apart by no more than this part of the piece's extent.
+const PACE: f64 = 1e-3;
 
 /// Boundaries of more pieces are matched only if they start with the same piece.
 const MOST_TURNS: usize = 64;
@@ -218,9 +223,22 @@ impl Boundary {
             })
             .collect();
         for (&i, pcurve) in kept.iter().zip(found) {
+            let segment = &self.model[i].segment;
+            let t = |share: f64| pcurve.range.start + share * pcurve.range.length();
+            let apart = |k: u32| {
+                let share = f64::from(k) / 8.0;
+                lifted(pcurve.curve.point(t(share))).distance(segment.at(share))
+            };
+            let slack = (PACE * segment.extent()).max(4.0 * resolution);
+            self.model[i].paced = (1..8).all(|k| apart(k) <= slack);
             self.model[i].pcurve = Some(pcurve);
         }
         true
+    }
+
+    /// True where all pieces run at the pace of their curves in parameter space.
+    pub(crate) fn paced(&self) -> bool {
+        self.model.iter().all(|use_| use_.paced || use_.pcurve.is_none())
     }
 
     /// The farthest that the pieces in space, each with its curve in parameter space, are from the surface.
@@ -240,6 +258,38 @@ impl Boundary {
             }
         }
         worst
+    }
+
+    /// True where the pieces in space run counter-clockwise in the parameters of `patch`: each point of them is looked for
+    /// among the curves in parameter space.
+    pub(crate) fn turn(&self, patch: &Patch) -> Option<bool> {
+        const STEPS: u32 = 16;
+        let steps = || (0..STEPS).map(|k| f64::from(k) / f64::from(STEPS));
+        let known: Vec<(DVec2, DVec3)> = self
+            .parameters
+            .iter()
+            .flat_map(|p| steps().map(|share| p.at(share)))
+            .map(|p_uv| (p_uv, patch.surface.point(p_uv)))
+            .collect();
+        let at =
+            |use_: &ModelUse, share: f64| use_.segment.at(if use_.forward { share } else { 1.0 - share });
+        let points = self.model.iter().flat_map(|use_| steps().map(move |share| at(use_, share)));
+        let nearest = |p: DVec3| known.iter().min_by(|a, b| a.1.distance(p).total_cmp(&b.1.distance(p)));
+        let polygon: Vec<DVec2> = points.filter_map(nearest).map(|found| found.0).collect();
+        let origin = *polygon.first()?;
+        let n = polygon.len();
+        let area: f64 = (0..n).map(|i| (polygon[i] - origin).perp_dot(polygon[(i + 1) % n] - origin)).sum();
+        (area != 0.0).then_some(area > 0.0)
+    }
+
+    /// The farthest that the pieces in space are from the surface.
+    pub(crate) fn model_off(&self, patch: &Patch) -> f64 {
+        let inverter = SurfaceInverter::new(&patch.surface, patch.surface.domain());
+        let off = |p: DVec3| inverter.invert(p, None).distance;
+        let ends = |use_: &ModelUse| {
+            PROBES.map(|share| use_.segment.at(share)).into_iter().map(off).fold(off(use_.start()), f64::max)
+        };
+        self.model.iter().map(ends).fold(0.0, f64::max)
     }
 
     /// True where the boundary in parameter space runs near the one in space, or there is only the former.

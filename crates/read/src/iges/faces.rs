@@ -4,10 +4,11 @@
 //! A boundary is given in space, in parameter space, or both. The curves in space become the edges where they lie on the
 //! surface, since neighbours have the same; otherwise the curves in parameter space do.
 
-use super::boundaries::{self, Boundary, Preference};
+use super::boundaries::{self, Boundary, LOOSE, Preference};
 use super::builder::Builder;
 use super::document::{Ix, Res};
 use super::matrix;
+use super::simpler::elementary;
 use super::surfaces::{Patch, surface};
 use crate::trimmed::{self, Look, Piece, Role, TrimLoop};
 use chordal_brep::{Face, FaceGeometry, FaceId, Loop};
@@ -40,10 +41,7 @@ impl Builder<'_, '_> {
         let outer = args.optional_reference()?.filter(|_| has_outer);
         let inner = (0..holes).map(|_| args.reference()).collect::<Res<Vec<Ix>>>()?;
         let patch = surface(self.doc, basis, &by)?;
-        let outer = outer.map(|outer| self.curve_on_surface(outer, &by, &patch)).transpose()?;
-        let inner = inner.into_iter().map(|hole| self.curve_on_surface(hole, &by, &patch));
-        let inner = inner.collect::<Res<Vec<Boundary>>>()?;
-        self.bounded(ix, patch, outer, inner, look)
+        self.bounded(ix, &by, patch, outer, &inner, look)
     }
 
     fn curve_on_surface(&self, ix: Ix, by: &DAffine3, patch: &Patch) -> Res<Boundary> {
@@ -65,37 +63,60 @@ impl Builder<'_, '_> {
         let count = args.count()?;
         let list = (0..count).map(|_| args.reference()).collect::<Res<Vec<Ix>>>()?;
         let patch = surface(self.doc, basis, &by)?;
-        let all = list.into_iter().map(|boundary| self.curve_on_surface(boundary, &by, &patch));
-        let mut all = all.collect::<Res<Vec<Boundary>>>()?.into_iter();
-        let outer = all.next();
-        self.bounded(ix, patch, outer, all.collect(), look)
+        let (outer, inner) = match list.split_first() {
+            Some((&outer, inner)) => (Some(outer), inner),
+            None => (None, &[][..]),
+        };
+        self.bounded(ix, &by, patch, outer, inner, look)
+    }
+
+    fn boundaries(&self, list: &[Ix], by: &DAffine3, patch: &Patch) -> Res<Vec<Boundary>> {
+        list.iter().map(|&boundary| self.curve_on_surface(boundary, by, patch)).collect()
     }
 
     /// A surface cut out by boundaries; without an outer one, its own border is that.
     fn bounded(
         &mut self,
         ix: Ix,
+        by: &DAffine3,
         patch: Patch,
-        outer: Option<Boundary>,
-        inner: Vec<Boundary>,
+        outer: Option<Ix>,
+        inner: &[Ix],
         look: &Look,
     ) -> Res<Vec<FaceId>> {
-        if outer.is_none() && inner.is_empty() {
+        let list: Vec<Ix> = outer.into_iter().chain(inner.iter().copied()).collect();
+        if list.is_empty() {
             return self.whole(ix, &patch, look);
         }
         let has_outer = outer.is_some();
-        let mut all: Vec<Boundary> = outer.into_iter().chain(inner).collect();
         let resolution = self.resolution();
-        let usable = all.iter_mut().all(|boundary| in_space(boundary, &patch, resolution));
-        let in_parameters = !usable && all.iter().all(|b| b.parameters_fit(&patch, resolution));
+        let slack = |boundary: &Boundary| (LOOSE * boundary.size()).max(4.0 * resolution);
+        let mut all = self.boundaries(&list, by, &patch)?;
+        if has_outer
+            && let Some(simple) = elementary(&patch)
+            && all.iter().all(|b| !b.model.is_empty() && b.model_off(&simple) <= slack(b))
+        {
+            let same = simple.reversed == patch.reversed;
+            let turns = all.iter().map(|b| b.turn(&patch).map(|ccw| ccw == same)).collect();
+            return self.cut_in_space(ix, &simple, all, turns, has_outer, look);
+        }
+        let turns: Vec<Option<bool>> = all.iter().map(|b| b.turn(&patch)).collect();
+        if all.iter_mut().all(|boundary| in_space(boundary, &patch, resolution)) {
+            return self.cut_in_space(ix, &patch, all, turns, has_outer, look);
+        }
+        // Where the two descriptions disagree, the one off the surface is wrong.
+        let has_parameters = all.iter().all(|b| !b.parameters.is_empty());
+        let in_parameters = has_parameters
+            && (all.iter().all(|b| b.parameters_fit(&patch, resolution))
+                || all.iter().any(|b| b.model.is_empty() || b.model_off(&patch) > slack(b)));
         if in_parameters {
             return Ok(self.cut_in_parameters(&patch, &all, has_outer, look));
         }
         if let Some(missing) = all.iter().find(|boundary| boundary.model.is_empty()) {
-            let what = "has no curve in space, and those in parameter space do not fit the others";
+            let what = "has no curve in space, and others have none in parameter space";
             return Err(self.doc.bad(missing.ix, what));
         }
-        self.cut_in_space(ix, &patch, all, has_outer, look)
+        self.cut_in_space(ix, &patch, all, turns, has_outer, look)
     }
 
     /// All boundaries as curves of parameter space.
@@ -134,20 +155,21 @@ impl Builder<'_, '_> {
         faces
     }
 
-    /// All boundaries as curves in space.
+    /// All boundaries as curves in space; `turns` says which way each runs in our parameters.
     fn cut_in_space(
         &mut self,
         ix: Ix,
         patch: &Patch,
         all: Vec<Boundary>,
+        turns: Vec<Option<bool>>,
         has_outer: bool,
         look: &Look,
     ) -> Res<Vec<FaceId>> {
         let mut loops = Vec::new();
-        for (i, boundary) in all.into_iter().enumerate() {
+        for (i, (boundary, turn)) in all.into_iter().zip(turns).enumerate() {
             let outer = i == 0 && has_outer;
             let size = boundary.size();
-            match self.model_loop(boundary.ix, boundary.model, size, patch, outer) {
+            match self.model_loop(boundary.ix, boundary.model, size, patch, outer, turn) {
                 Some(coedges) => loops.push(Loop::Edges { coedges, outer }),
                 None if outer => return Err(self.doc.bad(boundary.ix, "has no extent")),
                 None => self.doc.warn(boundary.ix, "an inner boundary has no extent; left out"),
@@ -198,7 +220,7 @@ impl Builder<'_, '_> {
         };
         let patch = surface(self.doc, ix, &DAffine3::IDENTITY)?;
         let boundary = boundaries::in_space(self.doc, curve, &by)?;
-        self.cut_in_space(ix, &patch, vec![boundary], true, look)
+        self.cut_in_space(ix, &patch, vec![boundary], vec![None], true, look)
     }
 }
 
@@ -211,7 +233,8 @@ fn in_space(boundary: &mut Boundary, patch: &Patch, resolution: f64) -> bool {
     if boundary.parameters.is_empty() {
         return true;
     }
-    if !boundary.match_pieces(patch, resolution) {
+    // Where equal shares of the two are not one point, neither helps the other: one of them must do.
+    if !boundary.match_pieces(patch, resolution) || !boundary.paced() {
         return false;
     }
     let strict = if boundary.preference == Preference::Parameters { 1.0 } else { 10.0 };

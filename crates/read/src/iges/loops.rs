@@ -4,8 +4,8 @@ use super::boundaries::ModelUse;
 use super::builder::Builder;
 use super::document::Ix;
 use super::surfaces::Patch;
-use chordal_brep::{Coedge, Edge, Pcurve, VertexId};
-use chordal_nurbs::{Curve2, DVec2, DVec3, Range};
+use chordal_brep::{Coedge, Edge, Pcurve, Source, VertexId};
+use chordal_nurbs::{Curve, Curve2, DVec2, DVec3, Range};
 use std::sync::Arc;
 
 /// Pieces of a boundary that are the two sides of a seam agree within this part of the boundary's size.
@@ -13,7 +13,8 @@ const SAME_SIDE: f64 = 1e-4;
 
 impl Builder<'_, '_> {
     /// The loop of a boundary's pieces; none where it has no extent. It runs counter-clockwise in our parameters if
-    /// `outer`, clockwise if not, wherever that can be told.
+    /// `outer`, clockwise if not, wherever that can be told: `turn` says which way the pieces run, true for
+    /// counter-clockwise.
     pub(crate) fn model_loop(
         &mut self,
         ix: Ix,
@@ -21,6 +22,7 @@ impl Builder<'_, '_> {
         size: f64,
         patch: &Patch,
         outer: bool,
+        turn: Option<bool>,
     ) -> Option<Vec<Coedge>> {
         let resolution = self.resolution();
         let tiny = (1e-7 * size).max(resolution.min(1e-5 * size));
@@ -32,8 +34,8 @@ impl Builder<'_, '_> {
         if turn_misfits(&mut pieces, tolerance) {
             self.doc.warn(ix, "some of its curves run against the others; they are turned round");
         }
-        match area(&pieces) {
-            Some(area) if (area > 0.0) != outer => reverse(&mut pieces),
+        match area(&pieces).map(|area| area > 0.0).or(turn) {
+            Some(ccw) if ccw != outer => reverse(&mut pieces),
             // The file's directions are those of its own normal.
             None if patch.reversed => reverse(&mut pieces),
             _ => {}
@@ -86,15 +88,31 @@ impl Builder<'_, '_> {
                 }
             });
             if !meets {
-                let edge = self.build.straight_edge(end, next, source);
-                coedges.push(Coedge { edge, forward: true, pcurves: Vec::new() });
+                coedges.push(self.bridge(end, next, patch, source));
             }
         }
         if widest > tolerance {
-            let what = format!("its curves are up to {widest:.3e} apart; joined by straight edges");
+            let what = format!("its curves are up to {widest:.3e} apart; joined along the surface");
             self.doc.warn(ix, what);
         }
         coedges
+    }
+
+    /// An edge over a gap: on the surface, straight in its parameters.
+    fn bridge(&mut self, from: VertexId, to: VertexId, patch: &Patch, source: Source) -> Coedge {
+        let (p, q) = (self.build.point_of(from), self.build.point_of(to));
+        let start = patch.surface.invert(p, None);
+        let direction = patch.surface.invert(q, Some(start)) - start;
+        let range = Range::new(0.0, 1.0);
+        if !(direction.length() > 0.0 && start.is_finite() && direction.is_finite()) {
+            let edge = self.build.straight_edge(from, to, source);
+            return Coedge { edge, forward: true, pcurves: Vec::new() };
+        }
+        let line = Curve2::Line { origin: start, direction };
+        let surface = Arc::new(patch.surface.clone());
+        let curve = Some(Arc::new(Curve::OnSurface { surface, curve: Box::new(line.clone()) }));
+        let edge = self.build.push_edge(Edge { curve, range, start: from, end: to, source });
+        Coedge { edge, forward: true, pcurves: vec![Pcurve { curve: Arc::new(line), range }] }
     }
 }
 

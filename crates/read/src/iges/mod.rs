@@ -19,6 +19,7 @@ mod loops;
 mod matrix;
 mod parameters;
 mod ruled;
+mod simpler;
 mod splines;
 mod surfaces;
 mod topology;

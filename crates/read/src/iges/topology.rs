@@ -5,6 +5,7 @@ use super::builder::Builder;
 use super::curves::{Segment, joined, segments, segments2};
 use super::document::{Args, Ix, Res};
 use super::matrix;
+use super::simpler::elementary;
 use super::surfaces::{Patch, surface};
 use crate::step::locate::locate;
 use crate::trimmed::Look;
@@ -133,6 +134,7 @@ impl Builder<'_, '_> {
             return Err(self.doc.bad(ix, format!("has {count} loops")));
         }
         let patch = surface(self.doc, basis, &by)?;
+        let patch = elementary(&patch).filter(|_| count > 0).unwrap_or(patch);
         let mut loops = Vec::new();
         for i in 0..count {
             let outer = i == 0 && first_is_outer;

@@ -41,6 +41,8 @@ struct Tree<'d, 'a> {
     groups: FxHashMap<Ix, Ix>,
     /// By subfigure definition.
     known: FxHashMap<Ix, Content>,
+    /// By instance.
+    read: FxHashMap<Ix, Res<(String, DAffine3, Content)>>,
     too_many: bool,
 }
 
@@ -52,6 +54,7 @@ pub(crate) fn build(doc: &Doc<'_>, name: &str) -> Placed {
         placed: Placed::default(),
         groups: groups(doc),
         known: FxHashMap::default(),
+        read: FxHashMap::default(),
         too_many: false,
     };
     let top: Vec<Ix> = (0..doc.entries.len()).filter(|ix| !used.contains(ix)).collect();
@@ -225,8 +228,18 @@ impl Tree<'_, '_> {
         }
     }
 
-    /// 408: subfigure, translation, scale.
+    /// Name, placement and content of an instance; read once, however often its subfigure is placed.
     fn instance(&mut self, ix: Ix) -> Res<(String, DAffine3, Content)> {
+        if let Some(known) = self.read.get(&ix) {
+            return known.clone();
+        }
+        let made = self.read_instance(ix);
+        self.read.insert(ix, made.clone());
+        made
+    }
+
+    /// 408: subfigure, translation, scale.
+    fn read_instance(&mut self, ix: Ix) -> Res<(String, DAffine3, Content)> {
         let mut args = self.doc.open(ix)?;
         let (definition, shift) = (args.reference()?, args.point()?);
         let scale = args.optional_real().unwrap_or(1.0);

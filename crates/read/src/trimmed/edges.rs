@@ -71,6 +71,16 @@ struct OnSide {
     ascends: bool,
 }
 
+impl OnSide {
+    /// The line along the side, with the other parameter as its own: both sides of a seam have the same.
+    fn line(&self) -> Arc<Curve2> {
+        let (mut origin, mut direction) = (DVec2::ZERO, DVec2::ZERO);
+        origin[self.axis] = self.value;
+        direction[1 - self.axis] = 1.0;
+        Arc::new(Curve2::Line { origin, direction })
+    }
+}
+
 impl Maker<'_> {
     fn chain(&mut self, chain: &Chain) -> Vec<Coedge> {
         let n = chain.pieces.len();
@@ -131,8 +141,16 @@ impl Maker<'_> {
         {
             return self.point_edge(ends[0], source);
         }
-        let (curve, pcurve, range, forward) = match side.as_ref().and_then(|side| self.border_curve(side)) {
-            Some((curve, pcurve, side)) => (curve, pcurve, side.range, side.ascends),
+        let (curve, pcurve, range, forward) = match &side {
+            Some(side) => {
+                let line = side.line();
+                (
+                    self.border_curve(side).unwrap_or_else(|| self.lifted(&line)),
+                    line,
+                    side.range,
+                    side.ascends,
+                )
+            }
             None => (self.lifted(&piece.curve), piece.curve.clone(), piece.range, piece.forward),
         };
         let pcurves = vec![Pcurve { curve: pcurve, range }];
@@ -174,13 +192,9 @@ impl Maker<'_> {
     }
 
     /// The curve along a side of a spline surface, with the other parameter as its own.
-    fn border_curve<'s>(&self, side: &'s OnSide) -> Option<(Curve, Arc<Curve2>, &'s OnSide)> {
+    fn border_curve(&self, side: &OnSide) -> Option<Curve> {
         let Surface::Nurbs(nurbs) = self.surface.as_ref() else { return None };
-        let curve = side_curve(nurbs, side.axis, side.value)?;
-        let (mut origin, mut direction) = (DVec2::ZERO, DVec2::ZERO);
-        origin[side.axis] = side.value;
-        direction[1 - side.axis] = 1.0;
-        Some((Curve::Nurbs(curve), Arc::new(Curve2::Line { origin, direction }), side))
+        side_curve(nurbs, side.axis, side.value).map(Curve::Nurbs)
     }
 
     /// A curve of parameter space in space: exact and simple on planes.
