@@ -9,7 +9,8 @@ pub enum ReadError {
     #[error("{name} is empty")]
     Empty { name: String },
     #[error(
-        "{name} is of no known format: it is neither STEP (ISO-10303-21) nor BREP (CASCADE Topology) nor IGES nor JSON"
+        "{name} is of no known format: none of STEP, IGES, BREP (CASCADE Topology), Open Inventor, VRML, X3D, \
+         free-form OBJ, and JSON of Chordal or geomdl"
     )]
     UnknownFormat { name: String },
     #[error("{name} is {format} that cannot be read: {problem}")]
