@@ -103,8 +103,8 @@ enum Attempt {
     Stuck,
 }
 
-/// Corners at poles are taken this share of their triangle off the pole.
-const BESIDE_POLE: f64 = 1e-9;
+/// Corners at poles are taken this share of their triangle off the pole: half of what bounds of cones still call the apex.
+const BESIDE_POLE: f64 = 5e-10;
 
 /// How much the sideways bend of parameter lines counts against their bend along the normal when triangles are shaped.
 const SIDEWAYS: f64 = 0.3;
