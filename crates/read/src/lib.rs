@@ -11,6 +11,7 @@ mod iges;
 mod inventor;
 mod json;
 mod obj;
+mod rhino;
 mod scene;
 mod step;
 mod trimmed;
@@ -54,6 +55,7 @@ struct Format {
 
 /// In the order in which they are tried: the surest signs first.
 const FORMATS: &[Format] = &[
+    Format { looks_like: rhino::looks_like_3dm, read: rhino::read },
     Format { looks_like: step::looks_like_step, read: step::read },
     Format { looks_like: json::looks_like_json, read: json::read },
     Format { looks_like: brep_text::looks_like_brep, read: brep_text::read },

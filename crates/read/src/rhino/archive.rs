@@ -1,0 +1,234 @@
+//! The tables of an archive, and its objects in their order.
+
+use super::bytes::{Bytes, Chunk, Res};
+use super::object::{Class, object};
+use super::surfaces::{RhinoSurface, surface};
+use super::tables::{Attributes, Layer, attributes, layers, units};
+use super::{MAGIC, brep, build, curves, extrusion, legacy, mesh};
+use crate::build::{Notes, PartBuilder};
+use crate::flat::LengthUnit;
+use crate::trimmed::{Look, Piece, Role, TrimLoop, add_body, add_faces, add_failed};
+use chordal_brep::{BodyKind, LooseItem, LooseKind, Part, Source, Warning};
+use chordal_nurbs::DVec2;
+use std::sync::Arc;
+
+const PROPERTIES: u32 = 0x1000_0014;
+const SETTINGS: u32 = 0x1000_0015;
+const LAYERS: u32 = 0x1000_0011;
+const OBJECTS: u32 = 0x1000_0013;
+const OPENNURBS_VERSION: u32 = 0xa000_0026;
+const OBJECT_RECORD: u32 = 0x2000_8070;
+const OBJECT_ATTRIBUTES: u32 = 0x0200_8072;
+const OBJECT_TYPE: u32 = 0x8200_0071;
+const END_OF_FILE: u32 = 0x0000_7fff;
+const END_OF_TABLE: u32 = 0xffff_ffff;
+
+/// A file's part, its unit, and what was noted on the way.
+pub(super) struct Read {
+    pub part: Part,
+    pub unit: LengthUnit,
+    pub warnings: Vec<Warning>,
+}
+
+/// What is known of the archive so far.
+struct Reader<'a> {
+    whole: &'a [u8],
+    builder: PartBuilder,
+    notes: Notes,
+    unit: LengthUnit,
+    layers: Vec<Layer>,
+    opennurbs: u32,
+    blocks: usize,
+}
+
+pub(super) fn read(whole: &[u8], version: u32) -> Read {
+    let mut reader = Reader {
+        whole,
+        builder: PartBuilder::default(),
+        notes: Notes::default(),
+        unit: LengthUnit::unstated(),
+        layers: Vec::new(),
+        opennurbs: 0,
+        blocks: 0,
+    };
+    let file = Bytes::new(&whole[MAGIC.len() + 8..], version);
+    if version == 1 {
+        reader.unit = legacy::read(file, whole, &mut reader.builder.part, &reader.notes);
+    } else {
+        reader.tables(file);
+    }
+    if reader.blocks > 0 {
+        let message = format!("{} placements of blocks are left out: blocks are not read", reader.blocks);
+        reader.notes.lose(Source::default(), message);
+    }
+    let warnings = reader.notes.take();
+    Read { part: reader.builder.finish(), unit: reader.unit, warnings }
+}
+
+impl<'a> Reader<'a> {
+    fn tables(&mut self, mut file: Bytes<'a>) {
+        while !file.is_empty() {
+            let source = self.source(&file);
+            let before = file;
+            match file.chunk() {
+                Ok(chunk) if chunk.code == END_OF_FILE => return,
+                Ok(chunk) => self.table(chunk),
+                Err(why) => {
+                    // Its last table may be cut off: the objects before the cut can be saved.
+                    let cut = cut_table(before);
+                    self.notes.lose(source, format!("the archive is damaged: {why}"));
+                    if let Some(table) = cut {
+                        self.table(table);
+                    }
+                    return;
+                }
+            }
+        }
+    }
+
+    fn table(&mut self, table: Chunk<'a>) {
+        let mut body = table.body;
+        match table.code {
+            PROPERTIES => {
+                while let Ok(chunk) = body.chunk() {
+                    if chunk.code == OPENNURBS_VERSION {
+                        self.opennurbs = chunk.value as u32;
+                    }
+                }
+            }
+            SETTINGS => {
+                if let Some((unit, tolerance)) = units(body) {
+                    self.unit = unit;
+                    self.builder.part.uncertainty = Some(tolerance).filter(|t| t.is_finite() && *t > 0.0);
+                }
+            }
+            LAYERS => self.layers = layers(body),
+            OBJECTS => self.objects(body),
+            _ => {}
+        }
+    }
+
+    fn objects(&mut self, mut table: Bytes<'a>) {
+        while !table.is_empty() {
+            let source = self.source(&table);
+            match table.chunk() {
+                Ok(chunk) if chunk.code == OBJECT_RECORD => self.object(chunk.body, source),
+                Ok(chunk) if chunk.code == END_OF_TABLE => return,
+                Ok(_) => {}
+                Err(why) => {
+                    self.notes.lose(source, format!("the table of objects is damaged: {why}"));
+                    return;
+                }
+            }
+        }
+    }
+
+    fn object(&mut self, mut record: Bytes<'a>, source: Source) {
+        let mut kind = None;
+        let mut shape: Res<(Class, Bytes)> = Err("it has no geometry".into());
+        let mut found = Attributes::default();
+        while !record.is_empty() {
+            let mut ahead = record;
+            match ahead.chunk() {
+                Ok(chunk) if chunk.code == OBJECT_TYPE => kind = Some(chunk.value),
+                Ok(chunk) if chunk.code == OBJECT_ATTRIBUTES => {
+                    found = attributes(chunk.body).unwrap_or_default();
+                }
+                Ok(_) if shape.is_err() && kind.is_some() => shape = object(&mut record),
+                Ok(_) => {}
+                Err(_) => break,
+            }
+            record = ahead;
+        }
+        if found.in_block {
+            return;
+        }
+        let look = self.look(found, source);
+        match shape {
+            Ok((class, data)) => self.shape(class, data, &look),
+            Err(why) => self.notes.lose(source, format!("an object cannot be read: {why}")),
+        }
+    }
+
+    fn look(&self, found: Attributes, source: Source) -> Look {
+        let layer = self.layers.iter().find(|layer| layer.index == found.layer);
+        Look {
+            name: found.name,
+            color: found.color.or(layer.and_then(|layer| layer.color)),
+            layer: layer.map(|layer| layer.name.clone()).filter(|name| !name.is_empty()),
+            flipped: false,
+            source,
+        }
+    }
+
+    fn shape(&mut self, class: Class, data: Bytes, look: &Look) {
+        match class {
+            Class::Brep => match brep::read(data, self.opennurbs) {
+                Ok(raw) => build::add(&mut self.builder, &raw, look, &self.notes),
+                Err(why) => _ = add_failed(&mut self.builder.part, why, look),
+            },
+            class if class.is_surface() => self.bare_surface(surface(class, data), look),
+            class if class.is_curve() => {
+                if let Err(why) = curves::curve(class, data) {
+                    self.notes.warn(look.source, format!("a curve makes no sense: {why}"));
+                }
+                self.loose(LooseKind::Wire, look);
+            }
+            Class::Point | Class::PointCloud => self.loose(LooseKind::Point, look),
+            Class::InstanceRef => self.blocks += 1,
+            Class::Mesh => match mesh::mesh(data, look) {
+                Ok(item) => self.builder.part.tessellated.push(item),
+                Err(why) => self.notes.lose(look.source, format!("a mesh is left out: {why}")),
+            },
+            Class::Extrusion => {
+                if let Err(why) = extrusion::add(&mut self.builder, data, look) {
+                    add_failed(&mut self.builder.part, why, look);
+                }
+            }
+            Class::SubD => self.notes.lose(look.source, "a subdivision surface is not read"),
+            // Texts, dimensions, lights, hatches.
+            _ => {}
+        }
+    }
+
+    /// A surface without trims is bounded by its own domain.
+    fn bare_surface(&mut self, found: Res<RhinoSurface>, look: &Look) {
+        let part = &mut self.builder.part;
+        match found {
+            Ok(found) => {
+                let surface = Arc::new(found.surface.clone());
+                let trims =
+                    if surface.domain().is_finite() { Vec::new() } else { vec![border(&found, look.source)] };
+                let mut warnings = Vec::new();
+                let faces = add_faces(part, &surface, &trims, look, &mut warnings);
+                add_body(part, faces, BodyKind::Sheet, look);
+                warnings.into_iter().for_each(|w| self.notes.warn(w.source, w.message));
+            }
+            Err(why) => _ = add_failed(part, why, look),
+        }
+    }
+
+    fn loose(&mut self, kind: LooseKind, look: &Look) {
+        self.builder.part.loose.push(LooseItem { kind, name: look.name.clone(), source: look.source });
+    }
+
+    /// The place in the file, in bytes.
+    fn source(&self, at: &Bytes) -> Source {
+        Source { entity: at.place_in(self.whole), line: 0 }
+    }
+}
+
+/// The border of a surface's domain as a loop.
+fn border(found: &RhinoSurface, source: Source) -> TrimLoop {
+    let (min, max) = (found.domain.min, found.domain.max);
+    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)].map(|p| found.parameters(p));
+    let pieces = (0..4).map(|k| Piece::line(corners[k], corners[(k + 1) % 4])).collect();
+    TrimLoop { pieces, role: Role::Outer, source }
+}
+
+/// What is there of a table that the file ends in.
+fn cut_table(mut file: Bytes) -> Option<Chunk> {
+    let code = file.u32().ok()?;
+    file.take(if file.version >= 50 { 8 } else { 4 }).ok()?;
+    Some(Chunk { code, value: 0, body: file })
+}

@@ -1,0 +1,49 @@
+//! Rhino's 3DM archives, versions 1 to 8.
+//!
+//! Bytes → [`bytes`] (chunks in chunks) → [`archive`] (tables; the objects with their attributes) → [`object`] (a class and
+//! its data) → [`brep`], [`surfaces`], [`curves`] (as the file holds them) → [`build`] (faces over
+//! shared edges); [`extrusion`] and [`mesh`] besides. Version 1 has objects of its own: [`legacy`]. The layout
+//! follows openNURBS, the library that defines the format.
+
+mod archive;
+mod brep;
+mod build;
+mod bytes;
+mod curves;
+mod extrusion;
+mod legacy;
+mod mesh;
+mod object;
+mod surfaces;
+mod tables;
+
+use crate::ReadError;
+use crate::flat;
+use chordal_brep::Model;
+
+/// What every archive begins with; its version follows in eight characters.
+const MAGIC: &[u8] = b"3D Geometry File Format ";
+
+/// True where the content is a 3DM archive.
+pub(crate) fn looks_like_3dm(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
+}
+
+/// Reads a 3DM archive.
+pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
+    let bad = |problem: String| ReadError::Unreadable { name: name.to_owned(), format: "3DM", problem };
+    let head = bytes.get(MAGIC.len()..MAGIC.len() + 8).map(<[u8]>::trim_ascii).unwrap_or_default();
+    let version: Option<u32> = std::str::from_utf8(head).ok().and_then(|text| text.parse().ok());
+    let version = version.ok_or_else(|| bad("its head has no version".into()))?;
+    if !matches!(version, 1..=4 | 5..=8 | 50..=89) {
+        return Err(bad(format!("its version is {version}")));
+    }
+    let read = archive::read(bytes, version);
+    let part = read.part;
+    if part.faces.is_empty() && part.tessellated.is_empty() && part.loose.is_empty() {
+        let first = read.warnings.first().map(|warning| format!(" ({warning})")).unwrap_or_default();
+        return Err(bad(format!("it holds no surface, no mesh and no curve{first}")));
+    }
+    let schema = format!("Rhino 3DM version {}", if version >= 50 { version / 10 } else { version });
+    Ok(flat::model(name, schema, read.unit, part, read.warnings))
+}
