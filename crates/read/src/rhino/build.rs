@@ -29,7 +29,14 @@ struct Maker<'a> {
     vertices: Vec<VertexId>,
     edges: Vec<Option<Made>>,
     curves: Vec<Option<(Arc<Curve>, Stops)>>,
+    /// Vertices that were found at the ends of curves.
+    found: Vec<VertexId>,
+    /// Such vertices are one within this distance.
+    rounding: f64,
 }
+
+/// Ends of curves nearer than this part of the object's size are one vertex: they differ by rounding.
+const SAME_POINT: f64 = 1e-9;
 
 /// Adds all faces as a body.
 pub(super) fn add(builder: &mut PartBuilder, raw: &RawBrep, look: &Look, notes: &Notes) {
@@ -40,7 +47,9 @@ pub(super) fn add(builder: &mut PartBuilder, raw: &RawBrep, look: &Look, notes: 
     });
     let curves = curves.collect();
     let edges = vec![None; raw.edges.len()];
-    let mut maker = Maker { raw, builder, notes, look, vertices, edges, curves };
+    let found = Vec::new();
+    let rounding = SAME_POINT * size(raw);
+    let mut maker = Maker { raw, builder, notes, look, vertices, edges, curves, found, rounding };
     let faces: Vec<FaceId> = raw.faces.iter().enumerate().map(|(i, face)| maker.face(i, face)).collect();
     let closed = matches!(raw.solid, 1 | 2) || pairs_up(raw);
     let part = &mut maker.builder.part;
@@ -54,6 +63,13 @@ pub(super) fn add(builder: &mut PartBuilder, raw: &RawBrep, look: &Look, notes: 
         layer: look.layer.clone(),
         source: look.source,
     });
+}
+
+/// A rough size: how far control points lie from the first.
+fn size(raw: &RawBrep) -> f64 {
+    let mut points = raw.curves.iter().flatten().flat_map(RhinoCurve::reach);
+    let Some(first) = points.next() else { return 0.0 };
+    points.fold(0.0, |size, p| size.max(p.distance(first)))
 }
 
 fn at<'a, T>(list: &'a [T], index: i32, what: &str) -> Res<&'a T> {
@@ -181,7 +197,7 @@ impl Maker<'_> {
     fn vertex(&mut self, index: i32, curve: &Curve, t: f64) -> VertexId {
         match at(&self.vertices, index, "vertex") {
             Ok(&vertex) => vertex,
-            Err(_) => self.builder.new_vertex(curve.point(t), self.look.source),
+            Err(_) => self.vertex_at(curve.point(t)),
         }
     }
 
@@ -195,8 +211,18 @@ impl Maker<'_> {
         let (flat, stops) = curve.in_plane();
         let range = part_of(proxy, curve.domain());
         let p_uv = surface.parameters(flat.point(stops.at(range.start + share * range.length())));
-        let point: DVec3 = surface.surface.point(p_uv);
-        self.builder.new_vertex(point, self.look.source)
+        self.vertex_at(surface.surface.point(p_uv))
+    }
+
+    /// The vertex at a point, made where there is none yet.
+    fn vertex_at(&mut self, point: DVec3) -> VertexId {
+        let near = |v: &&VertexId| self.builder.point_of(**v).distance(point) <= self.rounding;
+        if let Some(&known) = self.found.iter().find(near) {
+            return known;
+        }
+        let vertex = self.builder.new_vertex(point, self.look.source);
+        self.found.push(vertex);
+        vertex
     }
 
     /// An edge that is a single point.

@@ -220,6 +220,15 @@ impl RhinoCurve {
         Range::new(self.stops[0], self.stops[self.stops.len() - 1])
     }
 
+    /// Points that the curve lies among, roughly.
+    pub(super) fn reach(&self) -> Vec<DVec3> {
+        let of = |piece: &Piece| match &piece.shape {
+            Shape::Nurbs(curve) => curve.points().to_vec(),
+            Shape::Circle { frame, radius } => vec![frame.origin + frame.x * *radius, frame.origin],
+        };
+        self.pieces.iter().flat_map(of).collect()
+    }
+
     /// The curve in space, and the map from Rhino's parameters to its own.
     pub(super) fn in_space(&self) -> (Curve, Stops) {
         if let [Piece { shape, own }] = &self.pieces[..] {
