@@ -10,7 +10,7 @@ pub enum ReadError {
     Empty { name: String },
     #[error(
         "{name} is of no known format: none of STEP, IGES, BREP (CASCADE Topology), Open Inventor, VRML, X3D, \
-         free-form OBJ, and JSON of Chordal or geomdl"
+         free-form OBJ, 3DM, and JSON of Chordal or geomdl"
     )]
     UnknownFormat { name: String },
     #[error("{name} is {format} that cannot be read: {problem}")]
