@@ -174,11 +174,8 @@ impl Maker<'_> {
         if let Some(made) = self.edges[place] {
             return Ok(made);
         }
-        if let Err(why) = sound(&self.raw.curves, raw.curve, "curve") {
-            return Err(why);
-        }
-        let (curve, stops) = self.curves[raw.curve as usize].clone().ok_or("its edge has no curve")?;
         let domain = sound(&self.raw.curves, raw.curve, "curve")?.domain();
+        let (curve, stops) = self.curves[raw.curve as usize].clone().ok_or("its edge has no curve")?;
         let range = stops.range(part_of(&raw.proxy, domain));
         if !(range.is_finite() && range.start < range.end) {
             return Err(format!("its edge {place} runs over {}..{}", range.start, range.end));
