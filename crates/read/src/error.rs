@@ -9,7 +9,7 @@ pub enum ReadError {
     #[error("{name} is empty")]
     Empty { name: String },
     #[error(
-        "{name} is of no known format: none of STEP, IGES, BREP (CASCADE Topology), Open Inventor, VRML, X3D, \
+        "{name} is of no known format: none of STEP (ISO-10303-21), IGES, BREP (CASCADE Topology), Open Inventor, VRML, X3D, \
          free-form OBJ, 3DM, and JSON of Chordal or geomdl"
     )]
     UnknownFormat { name: String },
