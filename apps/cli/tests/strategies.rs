@@ -1,0 +1,64 @@
+//! Strategies on the command line: by name, compared, drawn, the same for any number of threads.
+
+mod common;
+
+use common::{files_in, model, run};
+
+#[test]
+fn a_comparison_is_a_table_and_a_plot() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plot = folder.path().join("plot.svg");
+    let ran = run(
+        "compare {} --tolerance 0.5% --strategies default,kd-worst,quadtree --both-bounds --json -q --plot {}",
+        &[&model("blade"), &plot],
+    )
+    .exits(&[0]);
+    let found: serde_json::Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    let rows = found["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 6);
+    let tolerance = found["tolerance"].as_f64().expect("a number");
+    for row in rows {
+        let proven = row["bound"] == "proven";
+        assert_eq!(row["proven_error"].as_f64().is_some_and(|e| e <= tolerance), proven, "{row}");
+        assert!(row["triangles"].as_u64() > Some(0) && row["ratio"].as_f64() > Some(1.0), "{row}");
+        assert!(!row["stages"].as_array().expect("stages").is_empty(), "{row}");
+    }
+    let drawn = std::fs::read_to_string(plot).expect("a plot");
+    assert!(drawn.starts_with("<svg") && drawn.contains("quadtree, estimated"));
+
+    let table = run("compare {} --tolerance 1% --strategies grid -q", &[&model("blade")]).exits(&[0]).stdout;
+    assert!(table.contains("triangles") && table.lines().any(|l| l.starts_with("grid")), "{table}");
+}
+
+#[test]
+fn unknown_strategies_are_refused_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.stl");
+    let ran = run("mesh {} -o {} --strategy kd", &[&model("blade"), &out]).exits(&[2]).says_one_sentence();
+    assert!(ran.stderr.contains("kd"), "{}", ran.stderr);
+    assert!(!out.exists());
+}
+
+#[test]
+fn every_meshed_face_is_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, drawings) = (folder.path().join("out.stl"), folder.path().join("drawings"));
+    run("mesh {} -o {} --strategy kd-worst --debug-svg {}", &[&model("blade"), &out, &drawings]).exits(&[0]);
+    assert_eq!(files_in(&drawings).len(), 4);
+    let face = std::fs::read_to_string(drawings.join("part0_face0.svg")).expect("a drawing");
+    assert!(face.matches("<rect").count() > 2, "cells are drawn");
+}
+
+#[test]
+fn threads_do_not_change_a_byte_of_any_strategy() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.ply");
+    for strategy in ["kd-worst", "cells", "quadtree", "delaunay-adaptive"] {
+        let bytes = |jobs: &str| {
+            let line = format!("mesh {{}} -o {{}} --tolerance 0.5% --strategy {strategy} --jobs {jobs}");
+            run(&line, &[&model("fillet_torus"), &out]).exits(&[0]);
+            std::fs::read(&out).expect("a mesh")
+        };
+        assert!(bytes("1") == bytes("4"), "{strategy}");
+    }
+}
