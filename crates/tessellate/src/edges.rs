@@ -186,12 +186,15 @@ fn halved(t: &[f64]) -> Vec<f64> {
 /// Parameters at which the curve runs through a pole of a surface: there charts jump, so there must be a sample.
 fn poles_on_the_way(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Vec<f64> {
     let mut found = Vec::new();
+    if uses.iter().all(|one| one.surface.poles.is_empty()) {
+        return found;
+    }
+    let reach = curve.loose_box(range);
     for EdgeUse { surface, .. } in uses {
         let at_end = |p: DVec3| {
             [range.start, range.end].iter().any(|&t| curve.point(t).distance(p) <= surface.resolution)
         };
         for pole in surface.poles.iter().filter(|pole| !at_end(pole.point)) {
-            let reach = curve.bbox(range);
             if pole.point.clamp(reach.min, reach.max).distance(pole.point) > surface.resolution {
                 continue;
             }

@@ -37,6 +37,18 @@ impl Curve {
     }
 }
 
+impl Curve {
+    /// A box that contains the curve over `range`, found quickly: of free-form curves that of all control points.
+    pub fn loose_box(&self, range: Range) -> Box3 {
+        match self {
+            Curve::Nurbs(curve) if curve.weights().is_none_or(|w| w.iter().all(|w| *w > 0.0)) => {
+                Box3::from_points(curve.points().iter().copied())
+            }
+            _ => self.bbox(range),
+        }
+    }
+}
+
 fn line_box(origin: DVec3, direction: DVec3, range: Range) -> Box3 {
     let end = |t: f64| {
         let at = |k: usize| if direction[k] == 0.0 { origin[k] } else { origin[k] + direction[k] * t };
