@@ -95,12 +95,18 @@ impl<'a> SurfaceInverter<'a> {
     /// The closest point. With `near`, a close one in its valley is preferred, and closed directions are unrolled to
     /// within half a period of it.
     pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> Inversion {
+        self.invert_within(p_xyz, near, 0.0)
+    }
+
+    /// As [`Self::invert`], where a point of the valley of `near` will do that is no farther away than `enough`: for points
+    /// that are known to lie off the surface, which would be searched for all over it.
+    pub fn invert_within(&self, p_xyz: DVec3, near: Option<DVec2>, enough: f64) -> Inversion {
         let uv = match &self.method {
             Method::Elementary => elementary::invert(self.surface, p_xyz, near),
             Method::Extrusion(inverter) => inverter.invert(p_xyz, near),
             Method::Revolution(inverter) => inverter.invert(p_xyz, near),
             Method::Grid { terrain, grid, uv } => {
-                let found = general::invert(terrain, *uv, grid, p_xyz, near);
+                let found = general::invert(terrain, *uv, grid, p_xyz, near, enough);
                 return Inversion { uv: self.placed(found.uv, near), ..found };
             }
             Method::Offset { terrain, basis_terrain, basis } => {

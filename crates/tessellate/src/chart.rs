@@ -6,7 +6,7 @@
 //! vertex.
 
 use crate::edges::EdgeSamples;
-use crate::surface::FaceSurface;
+use crate::surface::{FaceSurface, Near};
 use chordal_brep::{Coedge, Face, Loop, Part, Pcurve};
 use chordal_nurbs::{DVec2, DVec3};
 
@@ -126,12 +126,13 @@ impl FaceContext<'_, '_> {
     }
 
     fn inverted(&self, xyz: &[DVec3], start: Option<DVec2>) -> Vec<DVec2> {
-        let mut near = start;
+        let mut near = start.map(Near::on_surface);
         let mut uv: Vec<DVec2> = Vec::with_capacity(xyz.len());
         for (i, &p) in xyz.iter().enumerate() {
-            let found = self.surface.invert(p, near);
+            let place = self.surface.invert_from(p, near);
+            let found = place.uv;
             uv.push(found);
-            near = Some(match (uv.as_slice(), xyz.get(i + 1)) {
+            let ahead = match (uv.as_slice(), xyz.get(i + 1)) {
                 // Straight on: nearer than the last point, most of the time.
                 (&[.., last, _], Some(next)) => {
                     let (run, step) = (p.distance(xyz[i - 1]), p.distance(*next));
@@ -139,7 +140,8 @@ impl FaceContext<'_, '_> {
                     self.surface.inside(found + (found - last) * share)
                 }
                 _ => found,
-            });
+            };
+            near = Some(Near { uv: ahead, ..place });
         }
         uv
     }

@@ -6,7 +6,7 @@
 
 use crate::metric::{Limits, Sizing};
 use crate::prove::{TURN_LENGTH, turns_too_far};
-use crate::surface::FaceSurface;
+use crate::surface::{FaceSurface, Near};
 use chordal_brep::{Edge, Part, Pcurve};
 use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, SurfaceJet};
 
@@ -143,9 +143,9 @@ fn turning_less(
         let mut at = |t: f64| {
             let t = inside.clamp(t);
             let p = curve.point(t);
-            let uv = one.parameters(p, t, range, near);
-            near = Some(uv);
-            (t, p, one.surface.normal(uv))
+            let place = one.parameters(p, t, range, near);
+            near = Some(place);
+            (t, p, one.surface.normal(place.uv))
         };
         let mut fine = vec![t[0]];
         let mut last = at(t[0]);
@@ -240,9 +240,9 @@ fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
     let mut found = Vec::new();
     for one in uses.iter().filter(|u| u.surface.creases.iter().any(|c| !c.is_empty())) {
         let at = |i: usize| range.start + range.length() * i as f64 / CROSSING_SAMPLES as f64;
-        let mut uv: Vec<DVec2> = Vec::with_capacity(CROSSING_SAMPLES + 1);
+        let mut places: Vec<Near> = Vec::with_capacity(CROSSING_SAMPLES + 1);
         for i in 0..=CROSSING_SAMPLES {
-            uv.push(one.parameters(curve.point(at(i)), at(i), range, uv.last().copied()));
+            places.push(one.parameters(curve.point(at(i)), at(i), range, places.last().copied()));
         }
         for (axis, creases) in one.surface.creases.iter().enumerate() {
             for &value in creases {
@@ -250,10 +250,10 @@ fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
                 // An edge along the crease is on either side of it by rounding.
                 let rounding = ALONG_CREASE * one.surface.surface.beside_crease(axis, value);
                 for i in 0..CROSSING_SAMPLES {
-                    let (a, b) = (off(uv[i]), off(uv[i + 1]));
+                    let (a, b) = (off(places[i].uv), off(places[i + 1].uv));
                     let far = one.surface.periods[axis].is_some_and(|p| (a - b).abs() > 0.5 * p);
                     if (a < 0.0) != (b < 0.0) && !far && a.abs().max(b.abs()) > rounding {
-                        let side = |t: f64| off(one.parameters(curve.point(t), t, range, Some(uv[i])));
+                        let side = |t: f64| off(one.parameters(curve.point(t), t, range, Some(places[i])).uv);
                         found.push(bisected(side, at(i), at(i + 1)));
                     }
                 }
@@ -360,7 +360,7 @@ fn own_rate(curve: &Curve, jet: &CurveJet, limits: &Limits) -> f64 {
 #[derive(Clone, Copy)]
 struct Track {
     t: f64,
-    uv: DVec2,
+    place: Near,
     rate: DVec2,
 }
 
@@ -369,13 +369,13 @@ const ON_TRACK: f64 = 0.1;
 
 impl EdgeUse<'_, '_> {
     /// Where on the face the point at `t` lies: by the file, where it says so, else the nearest point's parameters.
-    fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<DVec2>) -> DVec2 {
+    fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<Near>) -> Near {
         let from_file = self.pcurve.filter(|_| !self.surface.is_elementary()).map(|p| {
             let share = (t - range.start) / range.length();
             let own = p.range.start + share * p.range.length();
             p.curve.point(own)
         });
-        from_file.unwrap_or_else(|| self.surface.invert(p_xyz, near))
+        from_file.map_or_else(|| self.surface.invert_from(p_xyz, near), Near::on_surface)
     }
 
     /// Chords per unit of parameter that the face asks for.
@@ -383,10 +383,10 @@ impl EdgeUse<'_, '_> {
         if matches!(self.surface.surface, chordal_nurbs::Surface::Plane { .. }) {
             return 0.0;
         }
-        let (uv, s) = self.place(jet, t, range, track.as_ref());
+        let (place, s) = self.place(jet, t, range, track.as_ref());
         // The direction in parameter space that maps to the curve's tangent, by least squares.
         let d = least_squares(&s, jet.d1);
-        *track = Some(Track { t, uv, rate: d });
+        *track = Some(Track { t, place, rate: d });
         let Some(sizing) = Sizing::new(&s, limits) else { return 0.0 };
         let rate = sizing.metric.length(d);
         // Across the edge the face curves, too, and far enough for a second row.
@@ -397,24 +397,24 @@ impl EdgeUse<'_, '_> {
     }
 
     /// Parameters of a point of the edge and the surface about there.
-    fn place(&self, jet: &CurveJet, t: f64, range: Range, track: Option<&Track>) -> (DVec2, SurfaceJet) {
+    fn place(&self, jet: &CurveJet, t: f64, range: Range, track: Option<&Track>) -> (Near, SurfaceJet) {
         if let Some(track) = track.filter(|_| self.pcurve.is_none() && !self.surface.is_elementary())
             && let Some(found) = self.followed(jet, t, track)
         {
             return found;
         }
-        let uv = self.parameters(jet.p, t, range, track.map(|track| track.uv));
-        (uv, self.surface.jet(uv))
+        let place = self.parameters(jet.p, t, range, track.map(|track| track.place));
+        (place, self.surface.jet(place.uv))
     }
 
     /// Straight on from the last probe, and a step of Gauss and Newton from there: as near as a spacing needs.
-    fn followed(&self, jet: &CurveJet, t: f64, track: &Track) -> Option<(DVec2, SurfaceJet)> {
-        let guess = self.surface.inside(track.uv + track.rate * (t - track.t));
+    fn followed(&self, jet: &CurveJet, t: f64, track: &Track) -> Option<(Near, SurfaceJet)> {
+        let guess = self.surface.inside(track.place.uv + track.rate * (t - track.t));
         let s = self.surface.jet(guess);
         let r = jet.p - s.p;
         let on_track = r.length() <= ON_TRACK * jet.d1.length() * (t - track.t).abs();
         let uv = self.surface.inside(guess + least_squares(&s, r));
-        (on_track && uv.is_finite()).then_some((uv, s))
+        (on_track && uv.is_finite()).then_some((Near { uv, ..track.place }, s))
     }
 }
 

@@ -16,6 +16,19 @@ pub(crate) struct FaceSurface<'a> {
     inverter: OnceLock<SurfaceInverter<'a>>,
 }
 
+/// Where on a surface a point lies, and how far off it the last one lay that was searched for all over it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near {
+    pub uv: DVec2,
+    pub distance: f64,
+}
+
+impl Near {
+    pub fn on_surface(uv: DVec2) -> Self {
+        Self { uv, distance: 0.0 }
+    }
+}
+
 impl<'a> FaceSurface<'a> {
     /// Control rows closer together than `point` count as a pole.
     pub fn new(surface: &'a Surface, point: f64) -> Self {
@@ -56,13 +69,24 @@ impl<'a> FaceSurface<'a> {
 
     /// The nearest point's parameters, in the turn nearest to `near`.
     pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> DVec2 {
+        self.invert_from(p_xyz, near.map(Near::on_surface)).uv
+    }
+
+    /// As [`Self::invert`], for one point after the other: where those before lay off the surface, a point as far off in the
+    /// same valley is not searched for all over it.
+    pub fn invert_from(&self, p_xyz: DVec3, near: Option<Near>) -> Near {
         if self.is_elementary() {
-            return self.surface.invert(p_xyz, near);
+            return Near::on_surface(self.surface.invert(p_xyz, near.map(|n| n.uv)));
         }
         let inverter =
             self.inverter.get_or_init(|| SurfaceInverter::new(self.surface, self.surface.domain()));
-        let uv = inverter.invert(p_xyz, near.map(|n| self.wrap.apply(n))).uv;
-        near.map_or(uv, |near| self.nearest_turn(uv, near))
+        let expected = near.map_or(0.0, |n| n.distance);
+        let enough = 2.0 * expected;
+        let found = inverter.invert_within(p_xyz, near.map(|n| self.wrap.apply(n.uv)), enough);
+        Near {
+            uv: near.map_or(found.uv, |near| self.nearest_turn(found.uv, near.uv)),
+            distance: if found.distance <= enough { expected } else { found.distance },
+        }
     }
 
     /// The point nearest to `p_xyz` in the valley that `start` lies in: a few Gauss–Newton steps, no search.

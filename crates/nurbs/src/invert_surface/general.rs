@@ -149,16 +149,17 @@ fn stations(start: f64, end: f64, breaks: &[f64], degree: usize) -> Vec<f64> {
     found
 }
 
-/// The closest point; a close one in the valley of `near` comes first.
+/// The closest point; a close one in the valley of `near`, or one not farther than `enough`, comes first.
 pub(super) fn invert(
     terrain: &Terrain<'_>,
     uv: UvBox,
     grid: &OnceLock<Grid>,
     p: DVec3,
     near: Option<DVec2>,
+    enough: f64,
 ) -> Inversion {
     let local = near.map(|n| descend(terrain, p, n));
-    if let Some(found) = local.filter(|found| found.is_close(terrain)) {
+    if let Some(found) = local.filter(|found| found.distance <= enough || found.is_close(terrain)) {
         return found.inversion();
     }
     let grid = grid.get_or_init(|| Grid::new(terrain.surface, uv));
