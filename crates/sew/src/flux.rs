@@ -4,9 +4,9 @@
 //! A loop that winds round a closed direction needs no seam so, and a pole at v₀ adds nothing. Where a loop winds in v the
 //! parts of u and v are exchanged. The integrals are taken by a quadrature that is good for signs and whole numbers.
 
-use crate::border::Border;
-use chordal_brep::{Face, FaceGeometry, Loop, Part};
-use chordal_nurbs::{Curve, DVec2, DVec3, Surface, SurfaceInverter};
+use crate::uv_loops::{UvLoop, uv_loops};
+use chordal_brep::{Face, FaceGeometry, Part};
+use chordal_nurbs::{DVec2, DVec3, Surface};
 use rayon::prelude::*;
 
 /// Gauss–Legendre nodes and weights on 0..1.
@@ -18,21 +18,15 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 /// Pieces that each path from v₀ is cut into.
 const PIECES: usize = 4;
-/// Samples of an edge at least; more where its polyline has more.
-const SAMPLES: usize = 8;
-
-/// A loop in the parameter plane, the interior on its left seen along the surface's own normal.
-struct UvLoop {
-    points: Vec<DVec2>,
-    /// Where the loop arrives after one turn, less where it began: whole periods, else zero.
-    winding: DVec2,
-}
 
 /// The flux of a field through a face along its normal as a part of its shell; `None` where it has no surface or loops that
 /// cannot be followed.
 fn flux(part: &Part, face: &Face, pieces: usize, field: impl Fn(DVec3) -> DVec3) -> Option<f64> {
     let FaceGeometry::Surface(surface) = &face.geometry else { return None };
     let loops = uv_loops(part, face, surface)?;
+    if loops.is_empty() {
+        return None;
+    }
     let axis = usize::from(loops.iter().any(|l| l.winding.y != 0.0));
     let base = base(surface, &loops, axis)?;
     let density = |uv: DVec2| {
@@ -84,51 +78,6 @@ fn base(surface: &Surface, loops: &[UvLoop], axis: usize) -> Option<f64> {
         return if upper { poles.max_by(f64::total_cmp) } else { poles.min_by(f64::total_cmp) };
     }
     loops.iter().flat_map(|l| &l.points).map(|p| p[other]).min_by(f64::total_cmp)
-}
-
-fn uv_loops(part: &Part, face: &Face, surface: &Surface) -> Option<Vec<UvLoop>> {
-    let inverter = SurfaceInverter::new(surface, surface.domain());
-    let periods = surface.periods();
-    let mut loops = Vec::new();
-    for a_loop in &face.loops {
-        let Loop::Edges { coedges, .. } = a_loop else { continue };
-        let mut points: Vec<DVec2> = Vec::new();
-        for coedge in coedges {
-            let edge = &part.edges[coedge.edge.index()];
-            let Some(curve) = edge.curve.as_deref() else { continue };
-            let straight = matches!(curve, Curve::Line { .. }) && matches!(surface, Surface::Plane { .. });
-            let mut t = Border::parameters(curve, edge.range, if straight { 1 } else { SAMPLES });
-            if !coedge.forward {
-                t.reverse();
-            }
-            for t in &t[..t.len() - 1] {
-                let near = points.last().copied();
-                let uv = inverter.invert(curve.point(*t), near).uv;
-                points.push(near.map_or(uv, |near| turned(uv, near, periods)));
-            }
-        }
-        if points.len() < 2 || points.iter().any(|p| !p.is_finite()) {
-            return None;
-        }
-        let back = turned(points[0], points[points.len() - 1], periods);
-        let mut winding = back - points[0];
-        if !face.same_sense {
-            points.reverse();
-            winding = -winding;
-            // The reversed loop begins at the old end: one turn on it arrives at the same place.
-        }
-        let whole = |d: f64, period: Option<f64>| period.map_or(0.0, |p| p * (d / p).round());
-        let winding = DVec2::new(whole(winding.x, periods[0]), whole(winding.y, periods[1]));
-        loops.push(UvLoop { points, winding });
-    }
-    (!loops.is_empty()).then_some(loops)
-}
-
-/// The same point in the turn nearest to `near`.
-fn turned(uv: DVec2, near: DVec2, periods: [Option<f64>; 2]) -> DVec2 {
-    let turn =
-        |t: f64, near: f64, period: Option<f64>| period.map_or(t, |p| t + p * ((near - t) / p).round());
-    DVec2::new(turn(uv.x, near.x, periods[0]), turn(uv.y, near.y, periods[1]))
 }
 
 /// Three times the volume that faces enclose, and the sum of the sizes of its parts; about `origin`.

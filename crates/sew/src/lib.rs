@@ -34,6 +34,7 @@ mod report;
 mod run;
 mod shells;
 mod tree;
+mod uv_loops;
 
 pub use gaps::{AutoTolerance, GapBin, gap_survey};
 pub use mesh::{MeshSewReport, OpenBorder, SewnMesh, sew_mesh};

@@ -1,7 +1,7 @@
 //! Pieces between the same two vertices that run along each other within the tolerance become one edge.
 //!
 //! Two are a pair. Where more meet, they are paired such that as few as possible stay alone, of one body before across
-//! bodies, the closer ones first, and never two faces that lie on each other if there is a choice. One that stays alone joins
+//! bodies, the closer ones first, and never two faces that lie on each other. One that stays alone joins
 //! the edge of a pair (three faces at an edge).
 
 use crate::border::{Border, Borders};
@@ -17,6 +17,8 @@ const ALIKE: f64 = 0.02;
 const ALL_WAYS: usize = 6;
 /// Two faces whose inward directions are this near (cosine) lie on each other.
 const ON_EACH_OTHER: f64 = 0.98;
+/// Faces are compared this share of a piece's length away from it.
+const BESIDE: f64 = 0.05;
 /// A face whose border runs along itself is a seam where the rest of it is longer than this many tolerances.
 const SEAM_REST: f64 = 8.0;
 
@@ -47,7 +49,7 @@ struct Candidate {
     b: usize,
     distance: f64,
     reversed: bool,
-    cost: [u32; 4],
+    cost: [u32; 3],
 }
 
 impl Pairing<'_> {
@@ -63,29 +65,40 @@ impl Pairing<'_> {
         keys.sort_unstable();
         let groups: Vec<&[([u32; 2], u32)]> =
             keys.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1).collect();
+        let doubles = self.doubles(&groups);
         groups
             .par_iter()
             .with_min_len(16)
             .flat_map_iter(|group| {
                 let members: Vec<u32> = group.iter().map(|g| g.1).collect();
-                self.group(&members)
+                self.group(&members, &doubles)
             })
             .collect()
+    }
+
+    /// Pairs of faces that may be joined along more than one piece: only these can be copies.
+    fn doubles(&self, groups: &[&[([u32; 2], u32)]]) -> Vec<[u32; 2]> {
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        for group in groups {
+            let faces: Vec<u32> = group.iter().take(ALL_WAYS).map(|g| self.border(g.1).of.face).collect();
+            for (i, a) in faces.iter().enumerate() {
+                pairs.extend(faces[i + 1..].iter().filter(|b| *b != a).map(|b| [*a.min(b), *a.max(b)]));
+            }
+        }
+        pairs.sort_unstable();
+        pairs.chunk_by(|a, b| a == b).filter(|g| g.len() > 1).map(|g| g[0]).collect()
     }
 
     fn border(&self, piece: u32) -> &Border {
         &self.borders.all[self.pieces.all[piece as usize].border as usize]
     }
 
-    fn group(&self, members: &[u32]) -> Vec<Joint> {
+    fn group(&self, members: &[u32], doubles: &[[u32; 2]]) -> Vec<Joint> {
         let mut candidates = Vec::new();
         for a in 0..members.len() {
             for b in a + 1..members.len() {
-                candidates.extend(self.candidate(members, a, b));
+                candidates.extend(self.candidate(members, a, b, doubles));
             }
-        }
-        if members.len() > 2 {
-            self.add_costs(members, &mut candidates);
         }
         candidates.sort_unstable_by(|x, y| {
             x.cost.cmp(&y.cost).then(x.distance.total_cmp(&y.distance)).then((x.a, x.b).cmp(&(y.a, y.b)))
@@ -100,13 +113,18 @@ impl Pairing<'_> {
         joints
     }
 
-    fn candidate(&self, members: &[u32], a: usize, b: usize) -> Option<Candidate> {
+    fn candidate(&self, members: &[u32], a: usize, b: usize, doubles: &[[u32; 2]]) -> Option<Candidate> {
         let (pa, pb) = (members[a], members[b]);
         let faces = [self.border(pa).of.face, self.border(pb).of.face];
         if faces[0] == faces[1] && !self.is_seam(pa, pb) {
             return None;
         }
         let (distance, reversed) = self.along(pa, pb)?;
+        let ring = self.pieces.all[pa as usize].ends[0] == self.pieces.all[pa as usize].ends[1];
+        let often = doubles.binary_search(&[faces[0].min(faces[1]), faces[0].max(faces[1])]).is_ok();
+        if faces[0] != faces[1] && (ring || often) && self.on_each_other(pa, pb) {
+            return None;
+        }
         let alike = (distance / (ALIKE * self.tolerance)) as u32;
         let across = u32::from(self.body[faces[0] as usize] != self.body[faces[1] as usize]);
         Some(Candidate {
@@ -114,7 +132,7 @@ impl Pairing<'_> {
             b,
             distance,
             reversed,
-            cost: [across, u32::from(faces[0] == faces[1]), alike, 0],
+            cost: [across, u32::from(faces[0] == faces[1]), alike],
         })
     }
 
@@ -178,16 +196,25 @@ impl Pairing<'_> {
         closed && (inner > enough || at_pole(ends[0]) || at_pole(ends[1]))
     }
 
-    /// For groups of more than two: faces that lie on each other should not be paired.
-    fn add_costs(&self, members: &[u32], candidates: &mut [Candidate]) {
-        let inward: Vec<Option<DVec3>> = members.iter().map(|&m| self.inward(m)).collect();
-        for c in candidates {
-            let on_each_other = match (inward[c.a], inward[c.b]) {
-                (Some(x), Some(y)) => x.dot(y) > ON_EACH_OTHER,
-                _ => false,
-            };
-            c.cost[3] = u32::from(on_each_other);
+    /// True where two faces lie on each other beside the pieces: copies, or sides of bodies that touch. Sewn to each other they
+    /// would enclose nothing.
+    fn on_each_other(&self, a: u32, b: u32) -> bool {
+        let (Some(x), Some(y)) = (self.inward(a), self.inward(b)) else { return false };
+        if x.dot(y) <= ON_EACH_OTHER {
+            return false;
         }
+        let surface = |piece: u32| match &self.part.faces[self.border(piece).of.face as usize].geometry {
+            FaceGeometry::Surface(surface) => Some(surface.clone()),
+            FaceGeometry::Failed(_) => None,
+        };
+        let (Some(of_a), Some(of_b)) = (surface(a), surface(b)) else { return false };
+        let piece = self.pieces.all[a as usize];
+        let border = self.border(a);
+        let middle = border.curve.point(0.5 * (piece.range.start + piece.range.end));
+        let share = piece.range.length() / border.range.length();
+        let beside = middle + x * (BESIDE * share * border.length);
+        let on_a = of_a.point(of_a.invert(beside, None));
+        of_b.point(of_b.invert(on_a, None)).distance(on_a) <= self.tolerance
     }
 
     /// The direction in which the face lies, at the middle of a piece.
@@ -309,9 +336,9 @@ fn greedy_matching(count: usize, candidates: &[Candidate]) -> Vec<usize> {
 
 /// The pairing with the most pairs and among these the least sum of costs.
 fn best_matching(count: usize, candidates: &[Candidate]) -> Vec<usize> {
-    let mut best: (usize, [u32; 4], Vec<usize>) = (0, [0; 4], Vec::new());
+    let mut best: (usize, [u32; 3], Vec<usize>) = (0, [0; 3], Vec::new());
     let mut chosen = Vec::new();
-    search(candidates, 0, &mut vec![true; count], [0; 4], &mut chosen, &mut best);
+    search(candidates, 0, &mut vec![true; count], [0; 3], &mut chosen, &mut best);
     best.2
 }
 
@@ -319,9 +346,9 @@ fn search(
     candidates: &[Candidate],
     from: usize,
     free: &mut [bool],
-    cost: [u32; 4],
+    cost: [u32; 3],
     chosen: &mut Vec<usize>,
-    best: &mut (usize, [u32; 4], Vec<usize>),
+    best: &mut (usize, [u32; 3], Vec<usize>),
 ) {
     if chosen.len() > best.0 || chosen.len() == best.0 && cost < best.1 {
         *best = (chosen.len(), cost, chosen.clone());

@@ -28,6 +28,8 @@ pub(crate) struct Decisions<'a> {
     /// Per piece: it vanishes into its vertex.
     pub vanished: &'a [bool],
     pub tolerance: f64,
+    /// Per face, loops that run the wrong way.
+    pub wrong_loops: &'a [Vec<usize>],
 }
 
 /// A part with its joints made.
@@ -108,7 +110,8 @@ fn links(decisions: &Decisions<'_>, references: &[Option<Reference>]) -> Vec<Lin
     let side = |piece: u32| {
         let of = decisions.borders.all[decisions.pieces.all[piece as usize].border as usize].of;
         let reversed = references[piece as usize].is_some_and(|r| r.reversed);
-        (of.face, of.forward ^ reversed)
+        let wrong = decisions.wrong_loops[of.face as usize].contains(&(of.in_loop as usize));
+        (of.face, of.forward ^ reversed ^ wrong)
     };
     let link = |joint: &Joint| {
         let [a, b] = joint.pair.map(side);

@@ -11,6 +11,7 @@ use crate::polygon::add_polygon_edges;
 use crate::rebuild::{Decisions, Link, Rebuilt, rebuild};
 use crate::report::{OpenEdge, SewReport};
 use crate::shells::{affected, body_of_faces, is_whole, regroup};
+use crate::uv_loops::wrong_loops;
 use chordal_brep::{EdgeId, FaceId, Part};
 
 /// An edge may close into a ring where it is longer than this many tolerances.
@@ -188,6 +189,7 @@ impl Sewing<'_> {
 
     fn finish(&self, attempt: Attempt) -> (Part, SewReport) {
         let Attempt { corners, clusters, pieces, joints, vanished, .. } = &attempt;
+        let wrong_loops = wrong_loops(self.part);
         let decisions = Decisions {
             borders: self.borders,
             corners,
@@ -196,9 +198,10 @@ impl Sewing<'_> {
             joints,
             vanished,
             tolerance: self.tolerance,
+            wrong_loops: &wrong_loops,
         };
         let Rebuilt { part: mut sewn, mut links } = rebuild(self.part, &decisions);
-        links.extend(self.old_links());
+        links.extend(self.old_links(&wrong_loops));
         let given = self.part;
         let flipped: Vec<bool> = sewn.faces.iter().map(|f| f.flipped).collect();
         let mut has_border = vec![false; sewn.faces.len()];
@@ -234,10 +237,11 @@ impl Sewing<'_> {
     }
 
     /// Faces that the file joined already.
-    fn old_links(&self) -> Vec<Link> {
+    fn old_links(&self, wrong_loops: &[Vec<usize>]) -> Vec<Link> {
+        let forward = |u: Use| u.forward ^ wrong_loops[u.face as usize].contains(&(u.in_loop as usize));
         let pair = |uses: &Vec<Use>| {
             let [a, b] = uses[..] else { return None };
-            Some(Link { faces: [a.face, b.face], same: a.forward == b.forward })
+            Some(Link { faces: [a.face, b.face], same: forward(a) == forward(b) })
         };
         let is_curve = |e: &usize| self.part.edges[*e].curve.is_some();
         (0..self.uses.len()).filter(is_curve).filter_map(|e| pair(&self.uses[e])).collect()

@@ -222,6 +222,29 @@ fn a_cube_of_six_islands_is_a_solid_whatever_way_they_face() {
     }
 }
 
+/// A plate with a hole whose loop runs the wrong way, and the wall of a peg in it.
+#[test]
+fn holes_that_run_the_wrong_way_turn_nobody_over() {
+    for wrong in [false, true] {
+        let mut islands = Islands::default();
+        islands.polygon(&flat([0.0, 3.0], [0.0, 3.0], 0.0), false);
+        let hole = flat([1.0, 2.0], [1.0, 2.0], 0.0);
+        let before = islands.part.faces.len();
+        islands.polygon(&hole, !wrong);
+        let ring = islands.part.faces.remove(before).loops;
+        islands.part.faces[0].loops.extend(ring);
+        for i in 0..4 {
+            let (a, b) = (hole[i], hole[(i + 1) % 4]);
+            islands.polygon(&[a, b, b + DVec3::Z, a + DVec3::Z], false);
+        }
+        let (part, report) = islands.sew(1e-6);
+        assert_eq!((report.sewn, report.contradictions, report.shells), (8, 0, 1), "{wrong}");
+        // The walls of the peg agree with each other and with the plate: all or none are turned.
+        let flipped: Vec<bool> = part.faces.iter().map(|f| f.flipped).collect();
+        assert!(flipped.iter().all(|f| *f == flipped[0]), "{wrong}: {flipped:?}");
+    }
+}
+
 #[test]
 fn stacked_cubes_stay_two_solids() {
     let mut islands = Islands::default();
@@ -236,13 +259,13 @@ fn stacked_cubes_stay_two_solids() {
 #[test]
 fn a_shell_in_a_shell_is_a_void_and_one_in_that_is_a_solid() {
     let mut islands = Islands::default();
-    for (k, size) in [3.0, 2.0, 1.0].into_iter().enumerate() {
+    for (k, size) in [4.0, 3.0, 2.0].into_iter().enumerate() {
         let sides = cube(DVec3::splat(-size), DVec3::splat(size));
         // The inner two are put in order first.
         sides.iter().enumerate().for_each(|(i, side)| islands.polygon(side, k > 0 && i == 2));
     }
     cap(&mut islands, 0.5, 0.0, true);
-    cap(&mut islands, 0.5, 0.0, false);
+    bowl(&mut islands, 0.5, 0.0);
     let (part, report) = islands.sew(1e-6);
     assert_eq!((report.closed_shells, report.open.len()), (4, 0));
     let shells: Vec<usize> = part.bodies.iter().map(|b| b.shells.len()).collect();
@@ -291,20 +314,41 @@ fn two_half_walls_and_two_caps_are_a_solid() {
     assert!(report.largest_move > 5e-5);
 }
 
+/// The lower half of a ball under the plane z = `z`.
+fn bowl(islands: &mut Islands, z: f64, seam: f64) {
+    let frame = Frame { origin: DVec3::Z * z, ..Frame::WORLD };
+    let v = islands.vertex(frame.origin + frame.radial(seam));
+    let ring = islands.edge(Curve::Circle { frame, radius: 1.0 }, Range::new(seam, seam + TAU), v, v);
+    islands.face(Surface::Sphere { frame, radius: 1.0 }, vec![vec![(ring, false)]], true);
+}
+
 #[test]
 fn rings_that_begin_elsewhere_are_one_edge_of_two_pieces() {
     let mut islands = Islands::default();
     cap(&mut islands, 0.0, 0.5, true);
-    cap(&mut islands, 0.0, 2.5, false);
+    bowl(&mut islands, 0.0, 2.5);
     let (part, report) = islands.sew(1e-6);
     assert_eq!((report.cuts, report.sewn, report.open.len()), (2, 2, 0));
     assert_eq!((part.edges.len(), part.vertices.len(), report.closed_shells), (2, 2, 1));
     // And with the same beginning, run either way, one ring.
     let mut islands = Islands::default();
     cap(&mut islands, 0.0, 0.5, true);
-    cap(&mut islands, 1e-7, 0.5, false);
+    bowl(&mut islands, 1e-7, 0.5);
     let (part, report) = islands.sew(1e-6);
     assert_eq!((report.cuts, report.sewn, part.edges.len()), (0, 1, 1));
+    assert_eq!(report.turned, 0, "it faces outward already");
+}
+
+#[test]
+fn copies_of_a_face_are_not_sewn_to_each_other() {
+    let mut islands = Islands::default();
+    for turned in [false, true, false] {
+        islands.polygon(&flat([0.0, 1.0], [0.0, 1.0], 0.0), turned);
+    }
+    cap(&mut islands, 5.0, 0.5, true);
+    cap(&mut islands, 5.0, 0.5, false);
+    let (_, report) = islands.sew(1e-6);
+    assert_eq!((report.sewn, report.closed_shells), (0, 0));
 }
 
 #[test]
