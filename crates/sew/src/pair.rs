@@ -19,6 +19,8 @@ const ALL_WAYS: usize = 6;
 const ON_EACH_OTHER: f64 = 0.98;
 /// Faces are compared this share of a piece's length away from it.
 const BESIDE: f64 = 0.05;
+/// And at least this many tolerances; pieces shorter than twice that tell nothing.
+const FAR: f64 = 20.0;
 /// A face whose border runs along itself is a seam where the rest of it is longer than this many tolerances.
 const SEAM_REST: f64 = 8.0;
 
@@ -127,13 +129,7 @@ impl Pairing<'_> {
         }
         let alike = (distance / (ALIKE * self.tolerance)) as u32;
         let across = u32::from(self.body[faces[0] as usize] != self.body[faces[1] as usize]);
-        Some(Candidate {
-            a,
-            b,
-            distance,
-            reversed,
-            cost: [across, u32::from(faces[0] == faces[1]), alike],
-        })
+        Some(Candidate { a, b, distance, reversed, cost: [across, u32::from(faces[0] == faces[1]), alike] })
     }
 
     /// How far two pieces are apart, and whether they run against each other; `None` where that is too far.
@@ -212,7 +208,13 @@ impl Pairing<'_> {
         let border = self.border(a);
         let middle = border.curve.point(0.5 * (piece.range.start + piece.range.end));
         let share = piece.range.length() / border.range.length();
-        let beside = middle + x * (BESIDE * share * border.length);
+        let length = share * border.length;
+        // So far away that faces at an angle, however sharp, are apart by more than the tolerance.
+        let away = (BESIDE * length).max(FAR * self.tolerance);
+        if away > 0.5 * length {
+            return false;
+        }
+        let beside = middle + x * away;
         let on_a = of_a.point(of_a.invert(beside, None));
         of_b.point(of_b.invert(on_a, None)).distance(on_a) <= self.tolerance
     }
