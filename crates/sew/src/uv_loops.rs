@@ -88,7 +88,8 @@ pub(crate) fn wrong_loops(part: &Part) -> Vec<Vec<usize>> {
 
 fn wrong_loops_of(part: &Part, face: &Face) -> Vec<usize> {
     let FaceGeometry::Surface(surface) = &face.geometry else { return Vec::new() };
-    if face.loops.len() < 2 {
+    // In a closed direction loops lie in turns of their own: which one is around which is not to be seen so.
+    if face.loops.len() < 2 || surface.periods().iter().any(Option::is_some) {
         return Vec::new();
     }
     let loops = uv_loops(part, face, surface).unwrap_or_default();
