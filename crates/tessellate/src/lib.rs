@@ -9,6 +9,7 @@ mod crease;
 mod crossings;
 mod edges;
 mod face;
+mod grid;
 mod looseness;
 mod lower_bound;
 mod metric;
