@@ -19,7 +19,7 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Mesh CAD files: STEP in; STL, PLY, OBJ, GLB or 3MF out.
+    /// Mesh CAD files: STEP, IGES, BREP, 3DM, Open Inventor, VRML, X3D, free-form OBJ or JSON in; STL, PLY, OBJ, GLB or 3MF out.
     Mesh(MeshArgs),
     /// Say what is in a CAD file: tree, units, faces by kind, gaps, loose items, warnings.
     Info(InfoArgs),
