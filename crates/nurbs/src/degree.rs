@@ -44,6 +44,17 @@ pub(crate) fn reduced_within<V: Vector>(curve: &BezierCurve<V>, budget: f64) -> 
     }
 }
 
+/// Down to `degree` by least-squares steps, and a proven bound of the distance at equal parameters.
+pub(crate) fn reduced_to<V: Vector>(curve: &BezierCurve<V>, degree: usize) -> (BezierCurve<V>, f64) {
+    let net = local_net(curve);
+    let mut lower = net.clone();
+    while lower.len() > degree.max(1) + 1 {
+        lower = least_squares(&lower);
+    }
+    let error = distance_bound(curve, &net, &lower);
+    (placed(curve, lower), error)
+}
+
 /// Homogeneous control points relative to the first.
 fn local_net<V: Vector>(curve: &BezierCurve<V>) -> Vec<Homogeneous<V>> {
     curve.mapped(|p| p - curve.points[0]).homogeneous()
