@@ -1,0 +1,200 @@
+//! The device: which adapter, what it must be able to do, and what becomes of its errors.
+
+use crate::GpuError;
+use std::sync::{Arc, Mutex};
+use wgpu::{Adapter, DeviceType, Features, Limits};
+
+/// Which kind of adapter may be used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DeviceChoice {
+    /// Hardware if there is any, else software.
+    #[default]
+    Best,
+    /// Discrete, integrated or virtual GPUs only.
+    Hardware,
+    /// Software only (Mesa lavapipe, SwiftShader).
+    Software,
+}
+
+/// A device with its queue.
+#[derive(Debug)]
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    name: String,
+    software: bool,
+    lost: Arc<Mutex<Option<String>>>,
+}
+
+/// Bytes of immediate data that the kernels use.
+const IMMEDIATES: u32 = 64;
+
+impl Gpu {
+    /// Opens the best adapter of the kind asked for.
+    ///
+    /// # Errors
+    /// [`GpuError::NoDevice`] where there is none, [`GpuError::Lacks`] where it cannot compute, [`GpuError::Refused`]
+    /// where the driver refuses.
+    pub fn open(choice: DeviceChoice) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::VULKAN,
+            flags: wgpu::InstanceFlags::empty(),
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
+        let Some(adapter) = chosen(adapters, choice) else {
+            let asked = match choice {
+                DeviceChoice::Best => "",
+                DeviceChoice::Hardware => " in hardware",
+                DeviceChoice::Software => " in software",
+            };
+            return Err(GpuError::NoDevice { asked: asked.into() });
+        };
+        Self::from_adapter(&adapter)
+    }
+
+    fn from_adapter(adapter: &Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let name = if info.driver.is_empty() {
+            info.name.clone()
+        } else {
+            format!("{} ({} {})", info.name, info.driver, info.driver_info)
+        };
+        let required = Features::IMMEDIATES;
+        if !adapter.features().contains(required) {
+            return Err(GpuError::Lacks { adapter: name, what: "immediate data (push constants)".into() });
+        }
+        let limits = adapter.limits();
+        if let Some(what) = missing(&limits) {
+            return Err(GpuError::Lacks { adapter: name, what });
+        }
+        let wished = Features::SHADER_F64 | Features::TIMESTAMP_QUERY | Features::MULTI_DRAW_INDIRECT_COUNT;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("chordal"),
+            required_features: required | (adapter.features() & wished),
+            required_limits: limits,
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| GpuError::Refused { adapter: name.clone(), reason: e.to_string() })?;
+        let lost = Arc::new(Mutex::new(None));
+        let told = lost.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            if let Ok(mut slot) = told.lock() {
+                *slot = Some(format!("{reason:?} {message}").trim().to_owned());
+            }
+        });
+        Ok(Self { device, queue, name, software: info.device_type == DeviceType::Cpu, lost })
+    }
+
+    /// The adapter's name with its driver.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// True where the device is a program on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.software
+    }
+
+    /// True where shaders can calculate in double precision.
+    pub fn has_f64(&self) -> bool {
+        self.device.features().contains(Features::SHADER_F64)
+    }
+
+    /// The largest storage binding in bytes.
+    pub fn binding_limit(&self) -> u64 {
+        let limits = self.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
+    /// # Errors
+    /// [`GpuError::Lost`] where the device is gone.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match self.lost.lock().ok().and_then(|slot| slot.clone()) {
+            Some(reason) => Err(GpuError::Lost(reason)),
+            None => Ok(()),
+        }
+    }
+
+    /// Waits until everything submitted is done.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] where the device is gone.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        polled.map(|_| ()).map_err(|e| GpuError::Lost(e.to_string()))
+    }
+
+    /// Runs `work` and turns what the device objects to into an error; `doing` continues "while …".
+    ///
+    /// # Errors
+    /// What `work` returns, [`GpuError::Lost`], [`GpuError::OutOfMemory`] or [`GpuError::Device`].
+    pub fn watched<T>(&self, doing: &str, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+        self.check()?;
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let result = work();
+        let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
+        self.check()?;
+        match errors.into_iter().flatten().next() {
+            None => result,
+            Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory(doing.into())),
+            Some(error) => Err(GpuError::Device { doing: doing.into(), reason: error.to_string() }),
+        }
+    }
+}
+
+/// The first adapter of the best rank that the choice allows.
+fn chosen(adapters: Vec<Adapter>, choice: DeviceChoice) -> Option<Adapter> {
+    let rank = |adapter: &Adapter| match adapter.get_info().device_type {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    };
+    let allowed = |adapter: &Adapter| match choice {
+        DeviceChoice::Best => true,
+        DeviceChoice::Hardware => rank(adapter) < 4,
+        DeviceChoice::Software => rank(adapter) == 4,
+    };
+    adapters.into_iter().filter(allowed).min_by_key(rank)
+}
+
+/// What the kernels need and the limits do not give, in words.
+fn missing(limits: &Limits) -> Option<String> {
+    let needs = [
+        (limits.max_compute_invocations_per_workgroup, 64, "compute workgroups of 64"),
+        (limits.max_storage_buffers_per_shader_stage, 8, "8 storage buffers a stage"),
+        (limits.max_immediate_size, IMMEDIATES, "64 bytes of immediate data"),
+        (limits.max_texture_dimension_2d, 2048, "textures of 2048 × 2048"),
+    ];
+    needs
+        .into_iter()
+        .find(|(has, needs, _)| has < needs)
+        .map(|(has, _, what)| format!("{what} (it has {has})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_named() {
+        assert_eq!(missing(&Limits::default()), Some("64 bytes of immediate data (it has 0)".into()));
+        let mut limits = Limits { max_immediate_size: 128, ..Limits::default() };
+        assert_eq!(missing(&limits), None);
+        limits.max_compute_invocations_per_workgroup = 0;
+        assert_eq!(missing(&limits), Some("compute workgroups of 64 (it has 0)".into()));
+    }
+
+    #[test]
+    fn no_device_says_what_to_install() {
+        let sentence = GpuError::NoDevice { asked: " in software".into() }.to_string();
+        assert!(sentence.starts_with("no Vulkan device was found in software; install"), "{sentence}");
+        assert!(sentence.contains("apt-get install mesa-vulkan-drivers libvulkan1"), "{sentence}");
+    }
+}

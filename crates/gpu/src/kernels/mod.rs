@@ -1,0 +1,15 @@
+//! One WGSL file per kernel, and next to each a CPU twin of the same name: the same arithmetic in the same order. In
+//! double precision, where nothing is fused, the two agree to the bit.
+
+pub(crate) mod basis_indexed;
+pub(crate) mod basis_packed;
+pub(crate) mod basis_unpacked;
+pub(crate) mod bernstein;
+pub(crate) mod direct;
+pub(crate) mod find_spans;
+pub(crate) mod samples;
+pub(crate) mod tensor;
+mod vector;
+
+pub(crate) use samples::{Inputs, Sample};
+pub(crate) use vector::{V3, V4};

@@ -1,0 +1,23 @@
+//! NURBS on the GPU: every surface of a model evaluated in one dispatch, trimmed per pixel, drawn.
+//!
+//! One program serves every degree from 1 to 100, rational or not, curves and surfaces. Each kernel is a WGSL file with
+//! a CPU twin of the same name; the tests hold the two against each other and against double precision, within the
+//! bounds stated at [`SurfaceEntry::point_bound`].
+
+mod device;
+mod error;
+mod evaluate;
+mod kernels;
+mod layout;
+mod real;
+mod samples;
+mod shaders;
+mod surfaces;
+
+pub use device::{DeviceChoice, Gpu};
+pub use error::GpuError;
+pub use evaluate::{Evaluated, Evaluation, Evaluator, OnDevice, Search, Variant, Wanted, evaluate_twin};
+pub use real::Real;
+pub use samples::{Request, Samples, sorted_by_span};
+pub use shaders::{SHADERS, Shader};
+pub use surfaces::{LocalFrame, SurfaceEntry, SurfaceSet};

@@ -1,0 +1,54 @@
+//! Every WGSL source of the crate, by name, as it is given to the device.
+
+use crate::Real;
+
+/// A shader: the files it is put together from, in order.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader {
+    pub name: &'static str,
+    files: &'static [&'static str],
+    /// The storage buffers of a compute shader, and whether it only reads them.
+    pub(crate) bindings: &'static [(u32, bool)],
+    /// True where numbers are `real`: it exists in both precisions.
+    pub generic: bool,
+}
+
+macro_rules! file {
+    ($name:literal) => {
+        include_str!(concat!("kernels/", $name, ".wgsl"))
+    };
+}
+
+macro_rules! kernel {
+    ($bindings:expr, $name:literal $(, $before:literal)*) => {
+        Shader { name: $name, files: &[$(file!($before),)* file!($name)], bindings: $bindings, generic: true }
+    };
+}
+
+/// The buffers of `samples.wgsl` and, at 6, the last input of a point kernel.
+const POINT_BINDINGS: &[(u32, bool)] =
+    &[(0, true), (1, true), (2, true), (3, true), (4, true), (5, true), (6, true), (7, false)];
+
+pub(crate) const BASIS_INDEXED: Shader =
+    kernel!(&[(2, true), (3, true), (4, true), (6, true), (7, false)], "basis_indexed", "common");
+pub(crate) const BASIS_UNPACKED: Shader =
+    kernel!(&[(2, true), (3, true), (4, true), (7, false)], "basis_unpacked", "common");
+pub(crate) const BASIS_PACKED: Shader =
+    kernel!(&[(2, true), (4, true), (7, false)], "basis_packed", "common");
+pub(crate) const TENSOR: Shader = kernel!(POINT_BINDINGS, "tensor", "common", "samples");
+pub(crate) const DIRECT: Shader = kernel!(POINT_BINDINGS, "direct", "common", "samples");
+pub(crate) const BERNSTEIN: Shader = kernel!(POINT_BINDINGS, "bernstein", "common", "samples");
+pub(crate) const FIND_SPANS: Shader =
+    kernel!(&[(0, true), (1, true), (2, false), (5, true), (7, false)], "find_spans", "common");
+
+/// All of them.
+pub const SHADERS: &[Shader] =
+    &[BASIS_INDEXED, BASIS_UNPACKED, BASIS_PACKED, TENSOR, DIRECT, BERNSTEIN, FIND_SPANS];
+
+impl Shader {
+    /// The whole source in the precision `R`.
+    pub fn source<R: Real>(&self) -> String {
+        let alias = if self.generic { format!("alias real = {};\n", R::WGSL) } else { String::new() };
+        alias + &self.files.concat()
+    }
+}
