@@ -57,6 +57,9 @@ pub struct MeshArgs {
     /// The axis of the written file that points up [default: z, in GLB y].
     #[arg(long, value_enum)]
     pub up: Option<UpArg>,
+    /// Write patches of `--strategy bezier` as quadrilaterals (OBJ and PLY only).
+    #[arg(long)]
+    pub quads: bool,
     /// Write the edges of the model as lines too (GLB only).
     #[arg(long)]
     pub edges: bool,
@@ -84,6 +87,10 @@ pub struct AccuracyArgs {
         allow_hyphen_values = true
     )]
     pub tolerance: Tolerance,
+    /// Largest distance between the edges of the model and their chords, where it is to be another one than --tolerance:
+    /// finer, or coarser (facets that touch an edge may then be as far off as that) [default: as --tolerance].
+    #[arg(long, value_name = "LENGTH|%", allow_hyphen_values = true)]
+    pub boundary_tolerance: Option<Tolerance>,
     /// Largest angle between the exact normals at the two ends of a mesh edge on one face: 20deg, 0.35rad, a bare
     /// number in degrees, or `off`.
     #[arg(
@@ -197,6 +204,7 @@ impl AccuracyArgs {
         };
         JobOptions::default()
             .with_tolerance(self.tolerance)
+            .with_boundary_tolerance(self.boundary_tolerance)
             .with_angle(self.angle.0)
             .with_max_edge(self.max_edge)
             .with_strategy(self.strategy)
@@ -220,6 +228,7 @@ impl MeshArgs {
             .with_unit(self.unit)
             .with_up(up)
             .with_edges(self.edges)
+            .with_quads(self.quads)
             .with_strict(self.strict)
             .with_debug_svg(self.debug_svg.clone())
     }

@@ -6,7 +6,7 @@ use crate::guard::guarded;
 use crate::outputs::{Outputs, plan};
 use crate::progress::Bar;
 use chordal::report::{Batch, BatchFailure};
-use chordal::{Cancel, Job, Report};
+use chordal::{Cancel, Job, Report, Strategy};
 use std::path::Path;
 
 /// At most so many warnings of one input are shown; the report has all.
@@ -15,7 +15,7 @@ const WARNINGS_SHOWN: usize = 3;
 pub fn run(args: &MeshArgs) -> Exit {
     let cancel = Cancel::default();
     stop_on_ctrl_c(&cancel);
-    let outputs = match check_report_path(args).and_then(|()| plan(args)) {
+    let outputs = match check_report_path(args).and_then(|()| check_quads(args)).and_then(|()| plan(args)) {
         Ok(outputs) => outputs,
         Err(sentence) => {
             say(&sentence);
@@ -117,6 +117,14 @@ fn tell(args: &MeshArgs, report: &Report) {
     for sentence in &report.undone {
         say(&format!("{input}: left undone: {sentence}"));
     }
+}
+
+/// Quadrilaterals are one strategy's, and not every format has them.
+fn check_quads(args: &MeshArgs) -> Result<(), String> {
+    if args.quads && args.accuracy.strategy != Strategy::Bezier {
+        return Err("--quads needs --strategy bezier: the others make triangles only".into());
+    }
+    Ok(())
 }
 
 fn check_report_path(args: &MeshArgs) -> Result<(), String> {

@@ -62,3 +62,56 @@ fn threads_do_not_change_a_byte_of_any_strategy() {
         assert!(bytes("1") == bytes("4"), "{strategy}");
     }
 }
+
+#[test]
+fn quadrilaterals_reach_the_file_and_the_file_is_closed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (extension, name) in [("obj", "fillet_bspline"), ("ply", "torus_full")] {
+        let out = folder.path().join(format!("out.{extension}"));
+        let report = folder.path().join("r.json");
+        let line = "mesh {} -o {} --strategy bezier --quads --tolerance 0.5% --report {} -q";
+        run(line, &[&model(name), &out, &report]).exits(&[0]);
+        run("check {}", &[&out]).exits(&[0]);
+        let report: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
+        let stage = |name: &str| {
+            let stages = report["stages"].as_array().expect("stages");
+            stages.iter().find(|s| s["name"] == name).map_or(0, |s| s["count"].as_u64().expect("a count"))
+        };
+        assert!(stage("quadrilaterals") > 0 && stage("scanlines") > 0, "{name}");
+        let bytes = std::fs::read(&out).expect("a mesh");
+        let text = String::from_utf8_lossy(&bytes);
+        let triangles = report["triangles"].as_u64().expect("a number");
+        let polygons = match extension {
+            "obj" => text.lines().filter(|l| l.starts_with("f ")).count() as u64,
+            _ => {
+                let line = text.lines().find(|l| l.starts_with("element face ")).expect("a header");
+                line.rsplit(' ').next().expect("a word").parse().expect("a number")
+            }
+        };
+        // Every quadrilateral that the proof left whole saves one polygon.
+        assert!(polygons < triangles, "{name}: {polygons} of {triangles}");
+        assert!(triangles - polygons <= stage("quadrilaterals"), "{name}");
+    }
+}
+
+#[test]
+fn quadrilaterals_of_other_strategies_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.obj");
+    let ran = run("mesh {} -o {} --quads", &[&model("blade"), &out]).exits(&[2]).says_one_sentence();
+    assert!(ran.stderr.contains("bezier"), "{}", ran.stderr);
+}
+
+#[test]
+fn edges_and_facets_have_tolerances_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, report) = (folder.path().join("out.stl"), folder.path().join("r.json"));
+    let line = "mesh {} -o {} --tolerance 0.1mm --boundary-tolerance 0.01mm --report {} -q";
+    run(line, &[&model("bracket"), &out, &report]).exits(&[0]);
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
+    assert_eq!(report["options"]["boundary_tolerance"], 0.01);
+    assert!(report["boundary_error"].as_f64().is_some_and(|e| e > 0.0 && e <= 0.01));
+    assert!(report["proven_error"].as_f64().is_some_and(|e| e > 0.01 && e <= 0.1));
+}

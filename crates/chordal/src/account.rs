@@ -103,6 +103,7 @@ pub(crate) fn account(
         version: env!("CARGO_PKG_VERSION").into(),
         input: input_report(job, model, resolved),
         options: options_report(job, resolved),
+        boundary_error: Some(0.0),
         loose: loose(model),
         warnings: warnings(model),
         ..Report::default()
@@ -146,6 +147,7 @@ fn options_report(job: &Job, resolved: &Resolved) -> OptionsReport {
     OptionsReport {
         tolerance: resolved.tolerance,
         tolerance_asked: options.tolerance.to_string(),
+        boundary_tolerance: resolved.boundary_tolerance,
         angle: options.angle.map(f64::to_degrees),
         max_edge: options.max_edge,
         strategy: options.strategy.name().into(),
@@ -241,6 +243,8 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
         None => report.faces.meshed += instances,
     }
     let gap = of_face.gap.max(of_face.pcurve_gap);
+    report.boundary_error =
+        report.boundary_error.zip(known(of_face.boundary_error)).map(|(all, own)| all.max(own));
     report.max_gap = report.max_gap.max(known(gap).unwrap_or(0.0));
     report.lower_bound += instances as f64 * of_face.lower_bound;
     report.face_list.push(FaceEntry {
@@ -289,7 +293,7 @@ fn undone(report: &Report, bound: Bound) -> Vec<String> {
         let at = place(&first.id, first.line);
         undone.push(format!("part of the file's shape may be missing: {at}{}{others}", first.message));
     }
-    let tolerance = report.options.tolerance;
+    let tolerance = report.options.tolerance.max(report.options.boundary_tolerance);
     match report.proven_error {
         Some(error) if error > tolerance => {
             undone.push(format!(

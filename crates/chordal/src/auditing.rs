@@ -45,7 +45,7 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &mut [Meshe
 
 fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options) -> AuditedPart {
     let claims: Vec<Claim> = meshed.report.faces.iter().map(claim).collect();
-    let asked = AuditOptions::new(options.tolerance)
+    let asked = AuditOptions::new(options.largest_tolerance())
         .with_angle(options.angle)
         .with_proven(options.bound == Bound::Proven);
     let audit = audit_part(part, &meshed.mesh, &asked, Some(&claims));
@@ -92,8 +92,9 @@ fn is_missing(meshed: &MeshedPart, face: usize) -> bool {
 /// The report says it already: shells that are not watertight are counted, and errors over the tolerance that the
 /// mesher owns up to.
 fn is_told(problem: &Problem, claims: &[Claim], options: &Options) -> bool {
-    let owned_up =
-        |f: u32| claims.get(f as usize).is_some_and(|c| !(c.proven_error <= options.tolerance) || c.missing);
+    let owned_up = |f: u32| {
+        claims.get(f as usize).is_some_and(|c| !(c.proven_error <= options.largest_tolerance()) || c.missing)
+    };
     match (problem.kind, problem.subject) {
         (ProblemKind::OpenShell | ProblemKind::InconsistentEdges, _) => true,
         (ProblemKind::OverTolerance, Subject::Face(f)) => owned_up(f),

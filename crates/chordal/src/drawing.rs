@@ -95,6 +95,7 @@ mod tests {
             face: 0,
             corners: vec![corner(0., 0.), corner(3., 0.), corner(3., 1.), corner(0., 1.)],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
+            quads: 0,
         };
         let (inner, boundary) = edges(&face);
         assert_eq!((inner, boundary.len()), (vec![(0, 2)], 4));

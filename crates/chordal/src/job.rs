@@ -6,6 +6,7 @@
 //! ```
 
 use crate::account::{Ledger, account};
+use crate::area::area;
 use crate::auditing::audit_parts;
 use crate::drawing::write_drawings;
 use crate::progress::FaceCounter;
@@ -154,6 +155,7 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     // 7. Write.
     job.tell(Progress::Writing);
     let scene = scene(&model, parts.iter().map(|p| p.mesh.clone()).collect(), format == Some(Format::Glb));
+    report.area = area(&scene);
     if let (Some(output), Some(format)) = (&job.output, format) {
         let summary = ledger
             .time(|s| &mut s.write, || write(&scene, output, format, &job.options, resolved.tolerance))?;

@@ -17,6 +17,7 @@
 mod account;
 mod against;
 mod analytic;
+mod area;
 mod auditing;
 mod check;
 mod compare;
@@ -43,6 +44,7 @@ mod tight_box;
 mod whole_file;
 
 pub use against::{AgainstReport, WorstFace};
+pub use area::area;
 pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
 pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, StageEntry, compare, plot};
 pub use convert::{ConvertOptions, Converted, convert};

@@ -17,11 +17,16 @@ use std::time::Duration;
 #[non_exhaustive]
 pub struct JobOptions {
     pub tolerance: Tolerance,
+    /// Largest distance between edges and their chords; `None`: as `tolerance`. Facets that touch an edge may be as far off
+    /// as the larger of the two.
+    pub boundary_tolerance: Option<Tolerance>,
     /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians.
     pub angle: Option<f64>,
     /// Longest mesh edge, in millimetres.
     pub max_edge: Option<f64>,
     pub strategy: Strategy,
+    /// Write the quadrilaterals of the strategy as such, where it makes some and the format has them (OBJ, PLY).
+    pub quads: bool,
     /// Whether loose faces are sewn before they are meshed.
     pub sew: Sew,
     pub bound: Bound,
@@ -47,9 +52,11 @@ impl Default for JobOptions {
     fn default() -> Self {
         Self {
             tolerance: Tolerance::default(),
+            boundary_tolerance: None,
             angle: Some(20_f64.to_radians()),
             max_edge: None,
             strategy: Strategy::Default,
+            quads: false,
             sew: Sew::default(),
             bound: Bound::Proven,
             jobs: None,
@@ -69,6 +76,10 @@ impl JobOptions {
         self.tolerance = tolerance;
         self
     }
+    pub fn with_boundary_tolerance(mut self, tolerance: Option<Tolerance>) -> Self {
+        self.boundary_tolerance = tolerance;
+        self
+    }
     pub fn with_angle(mut self, radians: Option<f64>) -> Self {
         self.angle = radians;
         self
@@ -79,6 +90,10 @@ impl JobOptions {
     }
     pub fn with_strategy(mut self, strategy: Strategy) -> Self {
         self.strategy = strategy;
+        self
+    }
+    pub fn with_quads(mut self, quads: bool) -> Self {
+        self.quads = quads;
         self
     }
     pub fn with_sew(mut self, sew: Sew) -> Self {

@@ -24,6 +24,9 @@ pub struct Report {
     /// Largest proven two-sided distance between the exact faces and the mesh **as written**, without the gap; `null`
     /// where a face has no proof.
     pub proven_error: Option<f64>,
+    /// Largest proven distance between an edge and its chords: what `options.boundary_tolerance` bounds;
+    /// `null` where one is not known.
+    pub boundary_error: Option<f64>,
     /// Largest distance of a mesh vertex from the exact surface of a face that uses it: what the file is loose by.
     pub max_gap: f64,
     /// Every shell that the file calls closed has no open and no inconsistent edge.
@@ -38,6 +41,8 @@ pub struct Report {
     /// As placed, shared by identity.
     pub vertices: usize,
     pub faces: FaceTotals,
+    /// The area of the triangles in mm², as placed, those that were in the file not counted.
+    pub area: f64,
     /// The fewest triangles that the tolerance allows (docs/report.md), as placed.
     pub lower_bound: f64,
     /// Rounds in which faces asked for finer edges, the most of any part.
@@ -79,6 +84,8 @@ pub struct OptionsReport {
     pub tolerance: f64,
     /// As it was asked for ("0.1 %").
     pub tolerance_asked: String,
+    /// Of the edges; the same as `tolerance` unless another was asked for.
+    pub boundary_tolerance: f64,
     /// `null`: no limit.
     pub angle: Option<f64>,
     pub max_edge: Option<f64>,

@@ -23,6 +23,8 @@ const LARGEST: f64 = 1e21;
 pub struct Resolved {
     /// In millimetres, of the mesh as written.
     pub tolerance: f64,
+    /// Of the edges, in millimetres; as `tolerance` where nobody asked for another.
+    pub boundary_tolerance: f64,
     /// Of the tight box in millimetres, where the tolerance was asked for in percent.
     pub diagonal: Option<f64>,
     /// What placing the mesh and rounding it to the format's numbers may cost, in millimetres: kept back from the
@@ -47,37 +49,45 @@ pub fn resolve(
 ) -> Result<Resolved, JobError> {
     let uses = part_uses(model);
     let edges = edge_box(model, &uses);
-    let (tolerance, diagonal, size) = match options.tolerance {
-        Tolerance::Millimetres(mm) => (mm, None, edges),
-        Tolerance::Percent(percent) => {
-            let tight = tight_box(model, &uses, edges, options.face_timeout, cancel);
-            (percent / 100.0 * tight.diagonal(), Some(tight.diagonal()), tight)
-        }
+    let asked = [Some(options.tolerance), options.boundary_tolerance];
+    let relative = asked.iter().flatten().any(|t| matches!(t, Tolerance::Percent(_)));
+    let size = if relative { tight_box(model, &uses, edges, options.face_timeout, cancel) } else { edges };
+    let diagonal = relative.then(|| size.diagonal());
+    let millimetres = |tolerance: Tolerance| match tolerance {
+        Tolerance::Millimetres(mm) => mm,
+        Tolerance::Percent(percent) => percent / 100.0 * size.diagonal(),
     };
+    let tolerance = millimetres(options.tolerance);
+    let boundary_tolerance = options.boundary_tolerance.map_or(tolerance, millimetres);
     let largest = size.largest_coordinate();
     if largest.is_nan() || largest >= LARGEST {
         return Err(too_large(model, input));
     }
     let floor = FLOOR_ULPS * f64::EPSILON * largest;
-    if !(tolerance > floor && tolerance.is_finite()) {
-        return Err(JobError::BelowFloor { path: input.to_owned(), tolerance, floor });
+    for tolerance in [tolerance, boundary_tolerance] {
+        if !(tolerance > floor && tolerance.is_finite()) {
+            return Err(JobError::BelowFloor { path: input.to_owned(), tolerance, floor });
+        }
     }
     let rounding = rounding(largest, format);
     // Where rounding eats more than half, the report says that the tolerance was not kept.
-    let of_parts = tolerance - rounding.min(0.5 * tolerance);
+    let of_parts = |tolerance: f64| tolerance - rounding.min(0.5 * tolerance);
+    let boundary = options.boundary_tolerance.map(|_| of_parts(boundary_tolerance));
     let parts = uses
         .iter()
         .map(|part_use| {
-            Options::new(of_parts / part_use.scale)
+            Options::new(of_parts(tolerance) / part_use.scale)
+                .with_boundary_tolerance(boundary.map(|length| length / part_use.scale))
                 .with_angle(options.angle)
                 .with_max_edge(options.max_edge.map(|length| length / part_use.scale))
                 .with_bound(options.bound)
                 .with_strategy(options.strategy)
+                .with_quads(options.quads)
                 .with_cells_recorded(options.debug_svg.is_some())
                 .with_face_timeout(options.face_timeout)
         })
         .collect();
-    Ok(Resolved { tolerance, diagonal, rounding, uses, parts })
+    Ok(Resolved { tolerance, boundary_tolerance, diagonal, rounding, uses, parts })
 }
 
 /// Names the vertex that lies farthest out.

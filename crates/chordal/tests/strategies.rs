@@ -76,6 +76,7 @@ fn own_part(strategy: &str) -> &'static str {
         "cells" => "parts of control cells",
         "recursive" => "recursively halved Bézier patches",
         "quadtree" | "quadtree-eq3" => "quadtree leaves",
+        "bezier" => "Bézier patches by projected nets",
         "delaunay-uniform" => "uniform fill points",
         "delaunay-adaptive" => "adaptive fill points",
         other => panic!("{other} has no part in this test"),

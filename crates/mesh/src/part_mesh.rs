@@ -32,6 +32,21 @@ pub struct FaceMesh {
     pub corners: Vec<Corner>,
     /// Indices into `corners`, counter-clockwise seen from outside the material.
     pub triangles: Vec<[u32; 3]>,
+    /// The first `2 · quads` triangles are the halves of quadrilaterals, two by two; formats that have quadrilaterals
+    /// keep them.
+    pub quads: u32,
+}
+
+impl FaceMesh {
+    /// The corners of the quadrilateral that two triangles form along the edge that they share, in the sense of both; each as
+    /// (which triangle, which corner of it). The first corner is an end of that edge: a fan around it is the two triangles.
+    pub fn quad_of(first: [u32; 3], second: [u32; 3]) -> Option<[(usize, usize); 4]> {
+        (0..3).find_map(|i| {
+            let (a, b) = (first[(i + 1) % 3], first[(i + 2) % 3]);
+            let j = (0..3).find(|&j| second[(j + 1) % 3] == b && second[(j + 2) % 3] == a)?;
+            Some([(0, (i + 1) % 3), (1, j), (0, (i + 2) % 3), (0, i)])
+        })
+    }
 }
 
 /// A mesh whose positions are shared by identity: two faces that meet at an edge use the same indices.
@@ -49,5 +64,22 @@ pub struct PartMesh {
 impl PartMesh {
     pub fn triangle_count(&self) -> usize {
         self.faces.iter().map(|f| f.triangles.len()).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_triangles_with_a_common_edge_are_a_quadrilateral() {
+        let corners = |first: [u32; 3], second: [u32; 3]| {
+            FaceMesh::quad_of(first, second)
+                .map(|quad| quad.map(|(t, i)| if t == 0 { first[i] } else { second[i] }))
+        };
+        assert_eq!(corners([0, 1, 2], [0, 2, 3]), Some([2, 3, 0, 1]));
+        assert_eq!(corners([2, 0, 1], [3, 0, 2]), Some([2, 3, 0, 1]));
+        assert_eq!(corners([0, 1, 2], [2, 0, 3]), None, "they run the same way");
+        assert_eq!(corners([0, 1, 2], [2, 3, 4]), None, "they share a corner only");
     }
 }

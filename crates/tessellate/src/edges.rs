@@ -50,7 +50,9 @@ const CORNER: f64 = 1e-3;
 impl EdgeSamples {
     /// Samples an edge with at least `least` chords.
     pub fn new(part: &Part, edge: &Edge, uses: &[EdgeUse<'_, '_>], limits: &Limits, least: usize) -> Self {
-        let limits = &Limits { tolerance: CHORD_AIM * limits.tolerance, ..*limits };
+        // Faces ask for chords as short as their facets need, and no shorter than the edge itself may be off.
+        let of_faces = &Limits { tolerance: CHORD_AIM * limits.tolerance.max(limits.boundary), ..*limits };
+        let limits = &Limits { tolerance: CHORD_AIM * limits.boundary, ..*limits };
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
             return Self { t: vec![edge.range.start], points: vec![ends[0]], sag: Vec::new(), fewest: 0.0 };
@@ -61,7 +63,7 @@ impl EdgeSamples {
         let mut stops = poles_on_the_way(curve, edge.range, uses);
         stops.extend(crease_crossings(curve, edge.range, uses));
         for smooth in smooth_ranges(curve, edge.range, &stops) {
-            samples.add_smooth(curve, smooth, uses, limits);
+            samples.add_smooth(curve, smooth, uses, [limits, of_faces]);
         }
         while samples.t.len() < least + 1 {
             samples.t = halved(&samples.t);
@@ -80,8 +82,14 @@ impl EdgeSamples {
     }
 
     /// Appends the chords of a piece without corners.
-    fn add_smooth(&mut self, curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>], limits: &Limits) {
-        let probes = Probes::new(curve, range, uses, limits);
+    fn add_smooth(
+        &mut self,
+        curve: &Curve,
+        range: Range,
+        uses: &[EdgeUse<'_, '_>],
+        [limits, of_faces]: [&Limits; 2],
+    ) {
+        let probes = Probes::new(curve, range, uses, [limits, of_faces]);
         self.fewest += probes.curvature_total.ceil().max(1.0);
         let mut count = (probes.total() - 1e-9).ceil().max(1.0) as usize;
         for _ in 0..8 {
@@ -283,7 +291,7 @@ struct Probes {
 }
 
 impl Probes {
-    fn new(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>], limits: &Limits) -> Self {
+    fn new(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>], [limits, of_faces]: [&Limits; 2]) -> Self {
         let mut breaks = vec![range.start];
         breaks.extend(curve.all_breaks(range));
         breaks.push(range.end);
@@ -305,7 +313,7 @@ impl Probes {
                 let by_faces = uses
                     .iter()
                     .zip(&mut tracks)
-                    .map(|(u, track)| u.rate(&jet, t, range, track, limits))
+                    .map(|(u, track)| u.rate(&jet, t, range, track, of_faces))
                     .fold(0.0, f64::max);
                 probes.curvature_total += own * width;
                 let last = probes.sum[probes.sum.len() - 1];

@@ -6,7 +6,7 @@ use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Bound, Cancel, Options};
 use crate::place::Rows;
 use crate::prove::{Prover, Verdict};
-use crate::strategy::{self, Strategy, trace::Trace};
+use crate::strategy::{self, Strategy, bezier::pairs, trace::Trace};
 use crate::triangulate::{Location, NONE, Triangulation, clip_ears, orient, sweep};
 use crate::unroll::{Chart, SEAM_CHORD};
 use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceBounds, UvBox};
@@ -19,11 +19,15 @@ pub(crate) struct FaceResult {
     pub keys: Vec<Key>,
     pub normals: Vec<DVec3>,
     pub triangles: Vec<[u32; 3]>,
+    /// The first `2 · quads` triangles are halves of quadrilaterals.
+    pub quads: usize,
     /// The outer loop runs against the face's sense: the neighbours tell which of the two is right.
     pub doubtful: bool,
     /// Positions of the keys that are private.
     pub private: Vec<DVec3>,
     pub proven_error: f64,
+    /// The largest distance of a chord of an edge.
+    pub boundary_error: f64,
     pub gap: f64,
     pub bound: &'static str,
     /// c·∫√|K| dA / ε, and the strips of a singly curved face.
@@ -128,6 +132,8 @@ pub(crate) struct FaceWork<'a, 's> {
     shape: Shape,
     pub trace: Trace,
     pub cells: Vec<UvBox>,
+    /// Corners of quadrilaterals that were made of two triangles each.
+    pub quads: Vec<[u32; 4]>,
 }
 
 impl<'a, 's> FaceWork<'a, 's> {
@@ -169,6 +175,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             chart,
             trace: Trace::default(),
             cells: Vec::new(),
+            quads: Vec::new(),
         };
         work.measure_boundary();
         let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
@@ -381,6 +388,16 @@ impl<'a, 's> FaceWork<'a, 's> {
         })
     }
 
+    /// Adds a point that no triangle uses yet.
+    pub fn add_point(&mut self, p: DVec2, metric: Metric) -> u32 {
+        self.measure(p);
+        if let Some(last) = self.metrics.last_mut() {
+            *last = metric;
+        }
+        self.mesh.points.push(p);
+        self.mesh.points.len() as u32 - 1
+    }
+
     /// The same, with a metric of the caller's choice for the new point.
     pub fn insert_in_metric(&mut self, p: DVec2, at: Location, metric: Metric) -> Option<u32> {
         self.measure(p);
@@ -425,24 +442,27 @@ impl<'a, 's> FaceWork<'a, 's> {
             .filter(keep)
             .map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
         let mut triangles: Vec<[u32; 3]> = triangles.collect();
+        let quads = if options.quads { pairs_first(&self.quads, &mut triangles) } else { 0 };
         let gap = gap.max(self.turn_pole_corners(&mut triangles, &mut keys));
-        let mut proven_error = error;
+        let mut boundary_error = 0.0f64;
         for point in &self.chart.points {
             if let Segment::Edge { edge, chord } = point.segment {
-                proven_error = proven_error.max(self.context.edges[edge as usize].sag[chord as usize]);
+                boundary_error = boundary_error.max(self.context.edges[edge as usize].sag[chord as usize]);
             }
         }
-        let proven_error =
-            if options.bound == Bound::Proven && error.is_finite() { proven_error } else { f64::NAN };
+        let proven = options.bound == Bound::Proven && error.is_finite();
+        let proven_error = if proven { error.max(boundary_error) } else { f64::NAN };
         let sign = if reversed { -1.0 } else { 1.0 };
         FaceResult {
             normals: self.normals.iter().map(|n| *n * sign).collect(),
             uv: self.mesh.points,
             keys,
             triangles,
+            quads,
             doubtful: self.chart.reversed,
             private,
             proven_error,
+            boundary_error,
             gap,
             bound,
             curvature_bound,
@@ -519,6 +539,17 @@ impl<'a, 's> FaceWork<'a, 's> {
                 .sum(),
         }
     }
+}
+
+/// Brings the halves of quadrilaterals that are still whole to the front, two by two; returns how many there are.
+fn pairs_first(quads: &[[u32; 4]], triangles: &mut Vec<[u32; 3]>) -> usize {
+    let pairs = pairs(quads, triangles);
+    let mut order: Vec<usize> = pairs.iter().flatten().copied().collect();
+    let mut rest = vec![true; triangles.len()];
+    order.iter().for_each(|&t| rest[t] = false);
+    order.extend((0..triangles.len()).filter(|&t| rest[t]));
+    *triangles = order.into_iter().map(|t| triangles[t]).collect();
+    pairs.len()
 }
 
 /// How a face of this surface is filled.

@@ -49,8 +49,10 @@ impl Metric {
 /// What an edge of the mesh must not exceed, in the part's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits {
-    /// Sagitta of a chord.
+    /// Distance of facets inside a face.
     pub tolerance: f64,
+    /// Sagitta of a chord of the model's edges, and distance of the facets that touch one where that is larger.
+    pub boundary: f64,
     /// Turn of the normal between the ends of an edge, radians.
     pub angle: f64,
     /// Length of an edge.

@@ -21,6 +21,9 @@ pub enum Bound {
 pub struct Options {
     /// Largest distance between mesh and surface, in the part's units.
     pub tolerance: f64,
+    /// Largest distance between an edge and its chords where it is to be another one than `tolerance`. Facets that touch an edge may then
+    /// be as far off as the larger of the two, others keep to `tolerance`.
+    pub boundary_tolerance: Option<f64>,
     /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians. Edges shorter than a
     /// tenth of the tolerance are exempt: beside a singular point no edge is short enough.
     pub angle: Option<f64>,
@@ -28,6 +31,8 @@ pub struct Options {
     pub max_edge: Option<f64>,
     pub bound: Bound,
     pub strategy: Strategy,
+    /// Keep the quadrilaterals of the strategy, where it makes some, as pairs of triangles.
+    pub quads: bool,
     /// Report the cells of subdivisions, to be drawn.
     pub record_cells: bool,
     /// Time after which a face is given up.
@@ -40,14 +45,24 @@ impl Options {
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
+            boundary_tolerance: None,
             angle: None,
             max_edge: None,
             bound: Bound::Proven,
             strategy: Strategy::Default,
+            quads: false,
             record_cells: false,
             face_timeout: None,
             face_triangles: 20_000_000,
         }
+    }
+    pub fn with_boundary_tolerance(mut self, length: Option<f64>) -> Self {
+        self.boundary_tolerance = length;
+        self
+    }
+    /// What bounds the distance between the whole mesh and the surfaces.
+    pub fn largest_tolerance(&self) -> f64 {
+        self.boundary_tolerance.map_or(self.tolerance, |boundary| boundary.max(self.tolerance))
     }
     pub fn with_angle(mut self, radians: Option<f64>) -> Self {
         self.angle = radians;
@@ -63,6 +78,10 @@ impl Options {
     }
     pub fn with_strategy(mut self, strategy: Strategy) -> Self {
         self.strategy = strategy;
+        self
+    }
+    pub fn with_quads(mut self, quads: bool) -> Self {
+        self.quads = quads;
         self
     }
     pub fn with_cells_recorded(mut self, record: bool) -> Self {

@@ -1,6 +1,6 @@
 //! Proof: every triangle gets a bound; one over budget is flipped, gets a point inside, or asks its edge to be finer.
 
-use crate::chart::Segment;
+use crate::chart::{Key, Segment};
 use crate::face::FaceWork;
 use crate::metric::{Limits, Metric};
 use crate::options::{Bound, Cancel, Options};
@@ -219,11 +219,24 @@ impl<'a> Prover<'a> {
         }
     }
 
-    fn bound(&mut self, work: &FaceWork<'_, '_>, facet: &Facet) -> FacetBound {
+    fn bound(&mut self, work: &FaceWork<'_, '_>, facet: &Facet, allowed: f64) -> FacetBound {
         if self.sampled {
             sampled_bound(work, facet)
         } else {
-            facet_bound(self.bounds, facet, self.limits.tolerance, &mut self.scratch)
+            facet_bound(self.bounds, facet, allowed, &mut self.scratch)
+        }
+    }
+
+    /// How far off a facet may be: beside an edge as far as that, where it may be farther.
+    ///
+    /// Not over its chords only: a facet that reaches from one end of a long chord to its middle is long itself.
+    fn allowed(&self, work: &FaceWork<'_, '_>, corners: [u32; 3]) -> f64 {
+        let on_edge = |v: u32| !matches!(work.key(v), Key::Private(_));
+        let boundary = self.limits.boundary;
+        if boundary > self.limits.tolerance && corners.into_iter().any(on_edge) {
+            boundary
+        } else {
+            self.limits.tolerance
         }
     }
 
@@ -242,9 +255,9 @@ impl<'a> Prover<'a> {
         if self.accept && orient(a, b, c) < 0.0 {
             return (f64::INFINITY, Fault::None);
         }
-        let bound = self.bound(work, &facet);
+        let tolerance = self.allowed(work, work.mesh.triangles[t as usize]);
+        let bound = self.bound(work, &facet, tolerance);
         let boundary = work.mesh.neighbors[t as usize].map(|n| n == NONE);
-        let tolerance = self.limits.tolerance;
         if bound.error > tolerance {
             let coarse = (0..3).filter(|&i| boundary[i] && bound.edges[i] > tolerance);
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
@@ -378,8 +391,8 @@ impl<'a> Prover<'a> {
             let first = facet([apex, a, apex2], [outer[1][(j + 1) % 3], None, outer[0][(i + 2) % 3]]);
             let second = facet([apex, apex2, b], [outer[1][(j + 2) % 3], outer[0][(i + 1) % 3], None]);
             let turn = [[apex, a, apex2], [apex, apex2, b]].iter().any(|&corners| self.turns(work, corners));
+            let allowed = [[apex, a, apex2], [apex, apex2, b]].map(|corners| self.allowed(work, corners));
             let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
-            let tolerance = self.limits.tolerance;
             let folds = |corners: [u32; 3], xyz| {
                 self.folded_height(xyz, corners.map(|v| work.normals[v as usize])).is_some()
             };
@@ -387,8 +400,8 @@ impl<'a> Prover<'a> {
             if !turn
                 && !long
                 && !folded
-                && self.bound(work, &first).error <= tolerance
-                && self.bound(work, &second).error <= tolerance
+                && self.bound(work, &first, allowed[0]).error <= allowed[0]
+                && self.bound(work, &second, allowed[1]).error <= allowed[1]
             {
                 work.mesh.flip_edge(t, i);
                 return true;

@@ -11,6 +11,8 @@ pub struct FaceReport {
     pub triangles: usize,
     /// Proven two-sided distance to the mesh, without the gap; NaN where nothing is proven.
     pub proven_error: f64,
+    /// Proven largest distance between the edges around it and their chords: what `boundary_tolerance` bounds.
+    pub boundary_error: f64,
     /// Largest distance of a mesh vertex from this face's surface: what the file itself is loose by.
     pub gap: f64,
     /// Largest distance of the file's own parameter curves on this face from the edges that bound it.

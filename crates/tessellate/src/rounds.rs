@@ -86,6 +86,7 @@ pub fn tessellate_part(
         part,
         limits: Limits {
             tolerance: AIM * options.tolerance,
+            boundary: AIM * options.boundary_tolerance.unwrap_or(options.tolerance),
             angle: options.angle.unwrap_or(f64::INFINITY),
             length: options.max_edge.unwrap_or(f64::INFINITY),
         },
@@ -323,6 +324,7 @@ impl Job<'_> {
                 Ok(result) => {
                     entry.triangles = result.triangles.len();
                     entry.proven_error = result.proven_error;
+                    entry.boundary_error = result.boundary_error;
                     entry.gap = result.gap;
                     entry.pcurve_gap = pcurve_gaps[index];
                     entry.bound = result.bound;

@@ -59,6 +59,7 @@ impl Stitcher<'_> {
             });
             mesh.triangles.push(corners);
         }
+        mesh.quads = face.quads as u32;
         mesh
     }
 

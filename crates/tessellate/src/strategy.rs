@@ -7,6 +7,7 @@
 
 pub(crate) mod trace;
 
+pub(crate) mod bezier;
 mod borders;
 mod cells;
 mod chords;
@@ -16,18 +17,25 @@ mod delaunay;
 mod derivatives;
 mod grid;
 mod kd;
+mod loop_tree;
 mod node;
 mod plain;
 mod poles;
 mod polygons;
+mod projected;
 mod quadtree;
 mod recursive;
 mod region;
 mod run;
+mod scanlines;
+#[cfg(test)]
+mod testing;
 
 pub use delaunay::Fill;
 pub use quadtree::Stretch;
 pub(crate) use run::fill;
+
+use node::Measure;
 
 /// Where a node of a subdivision is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +66,8 @@ pub enum Strategy {
     Recursive,
     /// Bézier patches cut into four (Kahlesz, Balázs, Klein 2001, sections 4, 6 and 7).
     Quadtree(Stretch),
+    /// Bézier patches as quadrilaterals (Ma, Hewitt 2002).
+    Bezier,
     /// Fill points and a Delaunay triangulation (survey of the Blender wiki, "Delaunay Triangulation").
     Delaunay(Fill),
 }
@@ -89,6 +99,7 @@ const KAHLESZ: &str = "Kahlesz, Balázs, Klein 2001, sections 4, 6 and 7";
 const GRID_CUT: &str = "Blender wiki, Uniform Grid Cut";
 const DIRECT: &str = "Blender wiki, Tessellation Terminology: direct tessellation";
 const RECURSIVE: &str = "Blender wiki, Recursive Subdivision / Piecewise Bézier";
+const MA_HEWITT: &str = "Ma, Hewitt 2002, section 4";
 const DELAUNAY: &str = "Blender wiki, Delaunay Triangulation";
 
 /// Every strategy, in the order of the help.
@@ -113,6 +124,7 @@ static ENTRIES: &[StrategyEntry] = &[
         "the same with the document's bilinear norm",
         KAHLESZ,
     ),
+    entry(Strategy::Bezier, "bezier", "Bézier patches as quadrilaterals", MA_HEWITT),
     entry(
         Strategy::Delaunay(Fill::Uniform),
         "delaunay-uniform",

@@ -58,7 +58,12 @@ fn sphere(rings: u32) -> PartMesh {
         |(position, &normal): (usize, &DVec3)| Corner { position: position as u32, uv: DVec2::ZERO, normal };
     let corners = positions.iter().enumerate().map(corner).collect();
     let origins = vec![Origin::Face(0); positions.len()];
-    PartMesh { positions, origins, faces: vec![FaceMesh { face: 0, corners, triangles }], edges: Vec::new() }
+    PartMesh {
+        positions,
+        origins,
+        faces: vec![FaceMesh { face: 0, corners, triangles, quads: 0 }],
+        edges: Vec::new(),
+    }
 }
 
 fn scene(mesh: PartMesh) -> Scene {

@@ -4,7 +4,7 @@ use crate::frame::{Frame, Place};
 use crate::names::{Unique, placed_name};
 use crate::summary::finite;
 use crate::{WriteError, WriteOptions};
-use chordal_mesh::{Corner, PassThrough, Rgba, Scene, ScenePart};
+use chordal_mesh::{Corner, FaceMesh, PassThrough, Rgba, Scene, ScenePart};
 use glam::DVec3;
 
 /// One placed part.
@@ -27,6 +27,8 @@ pub(crate) struct Patch<'a> {
     pub points: &'a [DVec3],
     pub source: Source<'a>,
     pub triangles: &'a [[u32; 3]],
+    /// The first `2 · quads` triangles are halves of quadrilaterals.
+    pub quads: u32,
     pub name: &'a str,
     pub color: Option<Rgba>,
 }
@@ -40,7 +42,37 @@ pub(crate) enum Source<'a> {
     PassThrough { normals: &'a [DVec3] },
 }
 
+/// A polygon of a patch: which of all corners of its triangles (three times the triangle's index, and its own) are its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Polygon {
+    slots: [usize; 4],
+    len: usize,
+}
+
+impl Polygon {
+    pub fn slots(&self) -> &[usize] {
+        &self.slots[..self.len]
+    }
+}
+
 impl Patch<'_> {
+    /// The quadrilaterals, then the triangles that are no half of one.
+    pub fn polygons(&self) -> impl Iterator<Item = Polygon> + '_ {
+        let triangle = |t: usize| Polygon { slots: [3 * t, 3 * t + 1, 3 * t + 2, 0], len: 3 };
+        let halves = self.triangles[..2 * self.quads as usize].chunks_exact(2).enumerate();
+        let quads = halves.flat_map(move |(q, pair)| match FaceMesh::quad_of(pair[0], pair[1]) {
+            Some(quad) => [Some(Polygon { slots: quad.map(|(t, i)| 3 * (2 * q + t) + i), len: 4 }), None],
+            None => [Some(triangle(2 * q)), Some(triangle(2 * q + 1))],
+        });
+        quads.flatten().chain((2 * self.quads as usize..self.triangles.len()).map(triangle))
+    }
+
+    /// The points' indices of a polygon's corners.
+    pub fn polygon_points(&self, polygon: &Polygon) -> impl Iterator<Item = u32> + use<'_> {
+        let slots = polygon.slots;
+        (0..polygon.len).map(move |i| self.point_indices(self.triangles[slots[i] / 3])[slots[i] % 3])
+    }
+
     /// The points' indices of a triangle's corners.
     pub fn point_indices(&self, triangle: [u32; 3]) -> [u32; 3] {
         match self.source {
@@ -91,6 +123,7 @@ pub(crate) fn face_patches(part: &ScenePart, color: Option<Rgba>) -> impl Iterat
                 body: part.face_bodies.get(index).copied(),
             },
             triangles: &face.triangles,
+            quads: face.quads,
             name: part.face_names.get(index).map_or("", String::as_str),
             color: color.or(part.face_colors.get(index).copied().flatten()),
         }
@@ -104,6 +137,7 @@ pub(crate) fn pass_patch(item: &PassThrough, color: Option<Rgba>) -> Patch<'_> {
         points: &item.points,
         source: Source::PassThrough { normals: if complete { &item.normals } else { &[] } },
         triangles: &item.triangles,
+        quads: 0,
         name: &item.name,
         color: color.or(item.color),
     }

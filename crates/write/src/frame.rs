@@ -72,6 +72,13 @@ impl Place {
     pub fn winding<T>(&self, [a, b, c]: [T; 3]) -> [T; 3] {
         if self.mirrored { [a, c, b] } else { [a, b, c] }
     }
+
+    /// The same for a polygon; its first corner stays the first.
+    pub fn wind<T>(&self, corners: &mut [T]) {
+        if self.mirrored {
+            corners[1..].reverse();
+        }
+    }
 }
 
 /// The unit vector along `v`, if it has a direction.

@@ -1,4 +1,5 @@
-//! OBJ: an object per placed part, a group per face, shared vertices, exact normals, 64-bit numbers in decimal digits.
+//! OBJ: an object per placed part, a group per face, shared vertices, exact normals, 64-bit numbers in decimal digits;
+//! quadrilaterals where the mesh has them.
 //!
 //! Colours live in a material library (MTL) beside the file. Their parts are sRGB, as viewers show them.
 
@@ -133,16 +134,20 @@ impl Writer {
             self.material = Some(material);
         }
         let mut text = Vec::new();
-        for (index, &triangle) in patch.triangles.iter().enumerate() {
-            let points = patch.point_indices(triangle);
-            let corners = [0, 1, 2].map(|i| {
-                let vertex = self.vertices + u64::from(remap.new_index[points[i] as usize]) + 1;
-                (vertex, normals.get(3 * index + i).copied())
-            });
-            tally.count_triangle(corners.map(|(v, _)| v));
+        for &triangle in patch.triangles {
+            tally.count_triangle(patch.point_indices(triangle).map(|p| remap.new_index[p as usize]));
+        }
+        let mut corners = Vec::with_capacity(4);
+        for polygon in patch.polygons() {
+            corners.clear();
+            corners.extend(patch.polygon_points(&polygon).zip(polygon.slots()).map(|(point, &slot)| {
+                let vertex = self.vertices + u64::from(remap.new_index[point as usize]) + 1;
+                (vertex, normals.get(slot).copied())
+            }));
+            item.place.wind(&mut corners);
             text.clear();
             text.push(b'f');
-            for (vertex, normal) in item.place.winding(corners) {
+            for &(vertex, normal) in &corners {
                 match normal {
                     Some(normal) => write!(text, " {vertex}//{normal}"),
                     None => write!(text, " {vertex}"),

@@ -1,4 +1,5 @@
-//! PLY: binary little endian, 64-bit coordinates, each point once per placed part, a face index per triangle.
+//! PLY: binary little endian, 64-bit coordinates, each point once per placed part, a face index per triangle (or
+//! quadrilateral, where the mesh has them: it counts as one wherever triangles are counted).
 //!
 //! `face_id` counts the faces of all placed parts in the order of the tree; triangles that came tessellated have −1.
 //! A comment `part V NV T NT F NF NAME` per placed part gives its first vertex, triangle and face and how many it has.
@@ -49,7 +50,7 @@ fn header(
     let (mut vertices, mut triangles) = (0_u64, 0_u64);
     for item in items {
         let item_vertices: u64 = remaps[item.part_index].iter().map(|r| u64::from(r.used)).sum();
-        let item_triangles: usize = item.groups().iter().flatten().map(|p| p.triangles.len()).sum();
+        let item_triangles: usize = item.groups().iter().flatten().map(|p| p.polygons().count()).sum();
         let (item_triangles, faces) = (item_triangles as u64, item.part.mesh.faces.len());
         let (name, face) = (one_line(&item.name), item.first_face);
         text += &format!(
@@ -110,19 +111,23 @@ fn write_faces(
         Source::Face { face, .. } => (item.first_face + u64::from(face)) as i32,
         Source::PassThrough { .. } => -1,
     };
-    let mut record = [0_u8; 21];
-    record[0] = 3;
-    record[13..17].copy_from_slice(&face_id.to_le_bytes());
-    record[17..].copy_from_slice(&color::srgb_bytes(patch.color.unwrap_or(color::UNCOLORED)));
-    let length = if colored { 21 } else { 17 };
+    let color = color::srgb_bytes(patch.color.unwrap_or(color::UNCOLORED));
+    let (mut record, mut corners) = (Vec::with_capacity(25), Vec::with_capacity(4));
     for &triangle in patch.triangles {
-        let corners = item.place.winding(patch.point_indices(triangle));
-        let corners = corners.map(|p| first_vertex + remap.new_index[p as usize]);
-        tally.count_triangle(corners);
-        for (bytes, index) in record[1..13].chunks_exact_mut(4).zip(corners) {
-            bytes.copy_from_slice(&index.to_le_bytes());
+        tally.count_triangle(patch.point_indices(triangle));
+    }
+    for polygon in patch.polygons() {
+        corners.clear();
+        corners.extend(patch.polygon_points(&polygon).map(|p| first_vertex + remap.new_index[p as usize]));
+        item.place.wind(&mut corners);
+        record.clear();
+        record.push(corners.len() as u8);
+        corners.iter().for_each(|index| record.extend_from_slice(&index.to_le_bytes()));
+        record.extend_from_slice(&face_id.to_le_bytes());
+        if colored {
+            record.extend_from_slice(&color);
         }
-        out.write_all(&record[..length])?;
+        out.write_all(&record)?;
     }
     Ok(())
 }

@@ -20,6 +20,36 @@ fn every_format_returns_the_assembly() {
     }
 }
 
+/// The same shape with the two triangles of each side of the bricks as one quadrilateral.
+fn in_quads() -> Scene {
+    let mut scene = assembly();
+    for part in &mut scene.parts {
+        std::sync::Arc::make_mut(&mut part.mesh).faces.iter_mut().for_each(|face| face.quads = 1);
+    }
+    scene
+}
+
+#[test]
+fn quadrilaterals_are_kept_where_the_format_has_them_and_mean_the_same_triangles() {
+    let scene = in_quads();
+    for format in FORMATS {
+        let soup = round_trip(&scene, &WriteOptions::new(format)).into_millimetres_z_up();
+        let tolerance = if format.is_single_precision() { 4e-5 } else { 1e-11 };
+        assert_same(&soup, &expected(&scene), tolerance);
+    }
+    let (bytes, summary) = write(&scene, &WriteOptions::new(Format::Ply));
+    let text = String::from_utf8_lossy(&bytes);
+    // Three bricks of six sides, and a sheet of two triangles.
+    assert!(text.contains("element face 20\n"), "{text}");
+    assert_eq!(summary.triangles, 38);
+    let (bytes, summary) = write(&scene, &WriteOptions::new(Format::Obj));
+    let text = String::from_utf8(bytes).unwrap();
+    let corners: Vec<usize> =
+        text.lines().filter(|l| l.starts_with("f ")).map(|l| l.split(' ').count() - 1).collect();
+    assert_eq!(corners.iter().filter(|&&n| n == 4).count(), 18);
+    assert_eq!((corners.len(), summary.triangles), (20, 38));
+}
+
 #[test]
 fn every_unit_and_axis_is_honoured_by_every_format() {
     let scene = assembly();

@@ -78,7 +78,7 @@ pub(crate) fn retriangulate(
 }
 
 /// Triangles that no fixed edge separates, polygon by polygon.
-fn polygons(mesh: &Triangulation, fixed: &FxHashSet<(u32, u32)>) -> Vec<Vec<u32>> {
+pub(crate) fn polygons(mesh: &Triangulation, fixed: &FxHashSet<(u32, u32)>) -> Vec<Vec<u32>> {
     let mut seen = vec![false; mesh.triangles.len()];
     let mut polygons = Vec::new();
     for start in 0..mesh.triangles.len() as u32 {
@@ -111,7 +111,7 @@ fn edge(mesh: &Triangulation, t: u32, i: usize) -> (u32, u32) {
 }
 
 /// The loops around a polygon, interior on the left; `None` where it touches itself or has corners inside.
-fn outline(mesh: &Triangulation, polygon: &[u32]) -> Option<Vec<Vec<u32>>> {
+pub(crate) fn outline(mesh: &Triangulation, polygon: &[u32]) -> Option<Vec<Vec<u32>>> {
     let mut sorted = polygon.to_vec();
     sorted.sort_unstable();
     let is_own = |t: u32| t != NONE && sorted.binary_search(&t).is_ok();

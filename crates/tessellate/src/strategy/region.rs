@@ -87,18 +87,10 @@ impl Region {
 
     /// True where the face has a point in the box.
     pub fn meets(&self, b: UvBox) -> bool {
-        self.near(b).into_iter().any(|k| self.chord_meets(k, b)) || self.contains(b.center())
-    }
-
-    fn chord_meets(&self, chord: u32, b: UvBox) -> bool {
-        let [p, q] = self.ends(chord);
-        if b.contains(p) || b.contains(q) {
-            return true;
-        }
-        let corners = [b.min, DVec2::new(b.max.x, b.min.y), b.max, DVec2::new(b.min.x, b.max.y)];
-        let sides = corners.map(|c| orient(p, q, c));
-        let beside = sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0);
-        !beside && p.max(q).cmpge(b.min).all() && p.min(q).cmple(b.max).all()
+        self.near(b).into_iter().any(|k| {
+            let [p, q] = self.ends(k);
+            chord_meets(p, q, b)
+        }) || self.contains(b.center())
     }
 
     /// The chord nearest to `p` with `p` within `reach` of it, lengths counted in `scale` per direction.
@@ -139,6 +131,17 @@ impl Region {
         }
         found
     }
+}
+
+/// True where the chord from `p` to `q` has a point in the closed box.
+pub(crate) fn chord_meets(p: DVec2, q: DVec2, b: UvBox) -> bool {
+    if b.contains(p) || b.contains(q) {
+        return true;
+    }
+    let corners = [b.min, DVec2::new(b.max.x, b.min.y), b.max, DVec2::new(b.min.x, b.max.y)];
+    let sides = corners.map(|c| orient(p, q, c));
+    let beside = sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0);
+    !beside && p.max(q).cmpge(b.min).all() && p.min(q).cmple(b.max).all()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! One face by a strategy: its parts, the common proof, and refinement by the strategy's own means where the proof fails.
 
 use super::Strategy;
+use super::bezier::BezierQuads;
 use super::cells::{Cells, Rule};
 use super::chords::coarse_chords;
 use super::cut::cut;
@@ -104,6 +105,7 @@ impl Method for ByCells {
 }
 
 fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<Box<dyn Method>, String> {
+    let measure = if bound == Bound::Proven { Measure::Conservative } else { Measure::Estimated };
     let (rule, filling): (Box<dyn Rule>, Filling) = match strategy {
         Strategy::Kd(cut) => (Box::new(Kd(cut)), Filling::FanOrMonotone),
         Strategy::Binary(cut) => (Box::new(Binary(cut)), Filling::FanOrMonotone),
@@ -111,6 +113,7 @@ fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<B
         Strategy::ControlCells { per_cell } => (Box::new(ControlCells { per_cell }), Filling::FanOrMonotone),
         Strategy::Recursive => (Box::new(Recursive), Filling::FanOrMonotone),
         Strategy::Quadtree(stretch) => (Box::new(Quadtree(stretch)), Filling::Delaunay),
+        Strategy::Bezier => return Ok(Box::new(BezierQuads::new(work, measure)?)),
         Strategy::Delaunay(fill) => return Ok(Box::new(Delaunay::new(work, fill))),
         Strategy::Default => return Err("the default strategy has no method of its own".into()),
     };
@@ -118,7 +121,6 @@ fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<B
     let tolerance = work.limits.tolerance;
     let mut cells = Cells::new(work.context.surface, region.uv_box, tolerance)?;
     cells.begin(&*rule, &region, tolerance);
-    let measure = if bound == Bound::Proven { Measure::Conservative } else { Measure::Estimated };
     Ok(Box::new(ByCells { region, cells, rule, filling, tolerance, measure, halvings: 0 }))
 }
 

@@ -35,6 +35,7 @@ pub fn box_mesh(low: DVec3, high: DVec3) -> PartMesh {
         face: face as u32,
         corners: quad.iter().map(|&position| Corner { position, uv: DVec2::ZERO, normal: *normal }).collect(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        quads: 0,
     };
     let faces = quads.iter().enumerate().map(face).collect();
     let pairs =
