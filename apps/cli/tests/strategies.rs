@@ -108,7 +108,7 @@ fn edges_and_facets_have_tolerances_of_their_own() {
     let folder = tempfile::tempdir().expect("a folder");
     let (out, report) = (folder.path().join("out.stl"), folder.path().join("r.json"));
     let line = "mesh {} -o {} --tolerance 0.1mm --boundary-tolerance 0.01mm --report {} -q";
-    run(line, &[&model("bracket"), &out, &report]).exits(&[0]);
+    run(line, &[&model("fillet_torus"), &out, &report]).exits(&[0]);
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
     assert_eq!(report["options"]["boundary_tolerance"], 0.01);
