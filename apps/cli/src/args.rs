@@ -1,6 +1,6 @@
 //! The command line: what can be asked, with its units and defaults.
 
-use chordal::{Bound, Format, JobOptions, Sew, Strategy, Tolerance, Unit, UpAxis};
+use chordal::{Bound, EdgeMethod, Format, JobOptions, Sew, Strategy, Tolerance, Unit, UpAxis};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -104,6 +104,9 @@ pub struct AccuracyArgs {
     /// How points are placed and connected.
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = strategies())]
     pub strategy: Strategy,
+    /// How edges become chords; every chord is proven against the edge itself.
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = edge_methods())]
+    pub edge_method: EdgeMethod,
     /// Whether the error of a facet is proven by an upper bound or estimated from samples.
     #[arg(long, value_enum, default_value = "proven")]
     pub bound: BoundArg,
@@ -136,6 +139,12 @@ fn parse_angle(text: &str) -> Result<AngleArg, chordal::QuantityError> {
 fn strategies() -> impl TypedValueParser<Value = Strategy> {
     let names = Strategy::entries().iter().map(|e| PossibleValue::new(e.name).help(e.summary));
     PossibleValuesParser::new(names).try_map(|name| Strategy::from_name(&name).ok_or("no such strategy"))
+}
+
+/// Edge methods by name, with a line of help for each.
+fn edge_methods() -> impl TypedValueParser<Value = EdgeMethod> {
+    let names = EdgeMethod::entries().iter().map(|e| PossibleValue::new(e.name).help(e.summary));
+    PossibleValuesParser::new(names).try_map(|name| EdgeMethod::from_name(&name).ok_or("no such edge method"))
 }
 
 fn parse_jobs(text: &str) -> Result<usize, String> {
@@ -208,6 +217,7 @@ impl AccuracyArgs {
             .with_angle(self.angle.0)
             .with_max_edge(self.max_edge)
             .with_strategy(self.strategy)
+            .with_edge_method(self.edge_method)
             .with_sew(self.sew.unwrap_or_default())
             .with_bound(bound)
             .with_jobs(self.jobs)

@@ -115,3 +115,31 @@ fn edges_and_facets_have_tolerances_of_their_own() {
     assert!(report["boundary_error"].as_f64().is_some_and(|e| e > 0.0 && e <= 0.01));
     assert!(report["proven_error"].as_f64().is_some_and(|e| e > 0.01 && e <= 0.1));
 }
+
+/// Every edge method runs its own parts, keeps the proof and the file watertight.
+#[test]
+fn edge_methods_run_their_own_parts_and_keep_the_proof() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, report) = (folder.path().join("out.ply"), folder.path().join("report.json"));
+    for (method, part) in [
+        ("bezier2d", "chords in planes of parameters"),
+        ("bezier3d", "lifted Bézier pieces"),
+        ("bezier3d-point", "lifted Bézier pieces"),
+        ("bezier3d-worst-line", "lifted Bézier pieces"),
+    ] {
+        for name in ["fillet_bspline", "pcurve_trims", "sphere_holes", "fillet_torus", "chamfers"] {
+            let line = format!("mesh {{}} -o {{}} --angle off --edge-method {method} --report {{}} -q");
+            run(&line, &[&model(name), &out, &report]).exits(&[0]);
+            let text = std::fs::read_to_string(&report).expect("a report");
+            let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+            assert_eq!(found["options"]["edge_method"], method);
+            let ran = found["stages"].as_array().expect("stages").iter().any(|s| s["name"] == part);
+            assert!(ran, "{method} of {name}: {}", found["stages"]);
+            let proven = found["proven_error"].as_f64().expect("proven");
+            assert!(
+                proven <= found["options"]["tolerance"].as_f64().expect("a number"),
+                "{method} of {name}"
+            );
+        }
+    }
+}

@@ -151,6 +151,7 @@ fn options_report(job: &Job, resolved: &Resolved) -> OptionsReport {
         angle: options.angle.map(f64::to_degrees),
         max_edge: options.max_edge,
         strategy: options.strategy.name().into(),
+        edge_method: options.edge_method.name().into(),
         sew: options.sew.to_string(),
         bound: bound_name(options.bound).into(),
         face_timeout: options.face_timeout.map(|t| t.as_secs_f64()),

@@ -26,6 +26,8 @@ pub struct Comparison {
     /// In degrees; `null`: no limit.
     pub angle: Option<f64>,
     pub faces: usize,
+    /// How edges became polylines.
+    pub edge_method: String,
     pub rows: Vec<ComparedRow>,
 }
 
@@ -57,7 +59,7 @@ pub struct ComparedRow {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, serde::Deserialize)]
 pub struct StageEntry {
     pub name: String,
-    /// Faces for which it ran; a face that is placed several times counts once.
+    /// Faces for which it ran; a face that is placed several times counts once. None for parts that work on edges.
     pub faces: usize,
     /// What it made in all of them.
     pub count: usize,
@@ -82,6 +84,7 @@ pub fn compare(
         model: input.display().to_string(),
         angle: options.angle.map(f64::to_degrees),
         faces: model.placed_faces(),
+        edge_method: options.edge_method.name().into(),
         ..Comparison::default()
     };
     let mut lower_bound = None;
@@ -148,13 +151,14 @@ fn row(model: &Model, resolved: &Resolved, parts: &[MeshedPart], fewest: f64) ->
 
 /// Books the parts that ran for the faces of one part of the model.
 pub(crate) fn add_stages(stages: &mut Vec<StageEntry>, part: &MeshedPart) {
-    for (name, count) in part.report.faces.iter().flat_map(|f| f.trace.parts()) {
+    let of_faces = part.report.faces.iter().flat_map(|f| f.trace.parts()).map(|p| (1, p));
+    for (faces, (name, count)) in part.report.edge_trace.parts().map(|p| (0, p)).chain(of_faces) {
         match stages.iter_mut().find(|s| s.name == name) {
             Some(stage) => {
-                stage.faces += 1;
+                stage.faces += faces;
                 stage.count += count;
             }
-            None => stages.push(StageEntry { name: name.into(), faces: 1, count }),
+            None => stages.push(StageEntry { name: name.into(), faces, count }),
         }
     }
 }

@@ -71,6 +71,8 @@ pub use chordal_nurbs as nurbs;
 pub use chordal_read as read;
 pub use chordal_sew as sew;
 pub use chordal_tessellate as tessellate;
-pub use chordal_tessellate::{Bound, Cancel, Cut, Fill, Strategy, StrategyEntry, Stretch};
+pub use chordal_tessellate::{
+    Bound, Cancel, Cut, EdgeMethod, EdgeMethodEntry, Fill, Strategy, StrategyEntry, Stretch,
+};
 pub use chordal_write as write;
 pub use chordal_write::{Format, Unit, UpAxis};

@@ -1,7 +1,7 @@
 //! What a job is asked for, in millimetres and radians.
 
 use crate::{Sew, Tolerance};
-use chordal_tessellate::{Bound, Strategy};
+use chordal_tessellate::{Bound, EdgeMethod, Strategy};
 use chordal_write::{Format, Unit, UpAxis};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -27,6 +27,8 @@ pub struct JobOptions {
     pub strategy: Strategy,
     /// Write the quadrilaterals of the strategy as such, where it makes some and the format has them (OBJ, PLY).
     pub quads: bool,
+    /// How edges become polylines.
+    pub edge_method: EdgeMethod,
     /// Whether loose faces are sewn before they are meshed.
     pub sew: Sew,
     pub bound: Bound,
@@ -57,6 +59,7 @@ impl Default for JobOptions {
             max_edge: None,
             strategy: Strategy::Default,
             quads: false,
+            edge_method: EdgeMethod::Default,
             sew: Sew::default(),
             bound: Bound::Proven,
             jobs: None,
@@ -94,6 +97,10 @@ impl JobOptions {
     }
     pub fn with_quads(mut self, quads: bool) -> Self {
         self.quads = quads;
+        self
+    }
+    pub fn with_edge_method(mut self, method: EdgeMethod) -> Self {
+        self.edge_method = method;
         self
     }
     pub fn with_sew(mut self, sew: Sew) -> Self {

@@ -90,6 +90,9 @@ pub struct OptionsReport {
     pub angle: Option<f64>,
     pub max_edge: Option<f64>,
     pub strategy: String,
+    /// How edges became polylines.
+    #[serde(default)]
+    pub edge_method: String,
     /// Merge tolerance of sewing as asked for ("auto where loose", "auto", "off", "0.01 mm").
     pub sew: String,
     pub bound: String,

@@ -83,6 +83,7 @@ pub fn resolve(
                 .with_bound(options.bound)
                 .with_strategy(options.strategy)
                 .with_quads(options.quads)
+                .with_edge_method(options.edge_method)
                 .with_cells_recorded(options.debug_svg.is_some())
                 .with_face_timeout(options.face_timeout)
         })

@@ -58,6 +58,6 @@ pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_surface::NurbsSurface;
 pub use passes::BasisTable;
 pub use surface::{Pole, Surface, SurfaceJet, SurfaceKind, TransformedSurface};
-pub use trim::{ChordCriterion, ChordCut, LiftOptions, LiftedPiece};
+pub use trim::{ChordCriterion, ChordCut, LiftOptions, LiftedPiece, PatchPiece};
 pub use uv_box::{Range, UvBox};
 pub use vector::Vector;

@@ -9,4 +9,4 @@ mod lift;
 mod roots;
 
 pub use chords::{ChordCriterion, ChordCut};
-pub use lift::{LiftOptions, LiftedPiece};
+pub use lift::{LiftOptions, LiftedPiece, PatchPiece};

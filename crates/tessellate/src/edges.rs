@@ -4,8 +4,10 @@
 //! in that measure, and each is then checked by a proven bound. Faces never add boundary vertices on their own: what they find
 //! out later comes back as a request ([`EdgeSamples::split`]).
 
+use crate::edge_method::EdgeMethod;
 use crate::metric::{Limits, Sizing};
 use crate::prove::{TURN_LENGTH, turns_too_far};
+use crate::strategy::trace::Trace;
 use crate::surface::{FaceSurface, Near};
 use chordal_brep::{Edge, Part, Pcurve};
 use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, SurfaceJet};
@@ -21,6 +23,8 @@ pub(crate) struct EdgeSamples {
     pub sag: Vec<f64>,
     /// The fewest chords that the tolerance allows by curvature alone (for the lower bound).
     pub fewest: f64,
+    /// Which parts of another edge method ran.
+    pub trace: Trace,
 }
 
 /// A face that uses the edge.
@@ -49,13 +53,20 @@ const CORNER: f64 = 1e-3;
 
 impl EdgeSamples {
     /// Samples an edge with at least `least` chords.
-    pub fn new(part: &Part, edge: &Edge, uses: &[EdgeUse<'_, '_>], limits: &Limits, least: usize) -> Self {
+    pub fn new(
+        part: &Part,
+        edge: &Edge,
+        uses: &[EdgeUse<'_, '_>],
+        limits: &Limits,
+        method: EdgeMethod,
+        least: usize,
+    ) -> Self {
         // Faces ask for chords as short as their facets need, and no shorter than the edge itself may be off.
         let of_faces = &Limits { tolerance: CHORD_AIM * limits.tolerance.max(limits.boundary), ..*limits };
         let limits = &Limits { tolerance: CHORD_AIM * limits.boundary, ..*limits };
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
-            return Self { t: vec![edge.range.start], points: vec![ends[0]], sag: Vec::new(), fewest: 0.0 };
+            return Self { t: vec![edge.range.start], points: vec![ends[0]], ..Self::default() };
         };
         let least = if edge.start == edge.end { least.max(3) } else { least };
         let mut samples = Self::default();
@@ -63,7 +74,12 @@ impl EdgeSamples {
         let mut stops = poles_on_the_way(curve, edge.range, uses);
         stops.extend(crease_crossings(curve, edge.range, uses));
         for smooth in smooth_ranges(curve, edge.range, &stops) {
-            samples.add_smooth(curve, smooth, uses, [limits, of_faces]);
+            let tolerance = limits.tolerance;
+            let given = method.parameters(curve, edge.range, smooth, uses, tolerance, &mut samples.trace);
+            match given {
+                Some(t) => samples.add_given(t, curve, smooth, uses, [limits, of_faces]),
+                None => samples.add_smooth(curve, smooth, uses, [limits, of_faces]),
+            }
         }
         while samples.t.len() < least + 1 {
             samples.t = halved(&samples.t);
@@ -103,7 +119,33 @@ impl EdgeSamples {
             count = ((count as f64 * factor).ceil() as usize).max(count + 1);
         }
         // Uneven beyond what the probes saw: halve the chords that are still too far off.
-        let mut t = probes.spread(count);
+        self.add_halved(probes.spread(count), curve, range, uses, limits);
+    }
+
+    /// Appends the chords that another method made of a piece without corners, halved where they are too far off the curve.
+    fn add_given(
+        &mut self,
+        t: Vec<f64>,
+        curve: &Curve,
+        range: Range,
+        uses: &[EdgeUse<'_, '_>],
+        [limits, of_faces]: [&Limits; 2],
+    ) {
+        self.fewest += Probes::new(curve, range, uses, [limits, of_faces]).curvature_total.ceil().max(1.0);
+        let made = t.len();
+        let before = self.t.len();
+        self.add_halved(t, curve, range, uses, limits);
+        self.trace.add("chords halved for the edge or a face's turn", self.t.len() - before - (made - 1));
+    }
+
+    fn add_halved(
+        &mut self,
+        mut t: Vec<f64>,
+        curve: &Curve,
+        range: Range,
+        uses: &[EdgeUse<'_, '_>],
+        limits: &Limits,
+    ) {
         for _ in 0..24 {
             let before = t.len();
             t = split_where(&t, |a, b| curve.chord_error(a, b) > limits.tolerance);
@@ -377,7 +419,7 @@ const ON_TRACK: f64 = 0.1;
 
 impl EdgeUse<'_, '_> {
     /// Where on the face the point at `t` lies: by the file, where it says so, else the nearest point's parameters.
-    fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<Near>) -> Near {
+    pub fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<Near>) -> Near {
         let from_file = self.pcurve.filter(|_| !self.surface.is_elementary()).map(|p| {
             let share = (t - range.start) / range.length();
             let own = p.range.start + share * p.range.length();

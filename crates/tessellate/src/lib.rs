@@ -7,6 +7,7 @@
 mod chart;
 mod crease;
 mod crossings;
+mod edge_method;
 mod edges;
 mod face;
 mod grid;
@@ -25,6 +26,7 @@ mod surface;
 mod triangulate;
 mod unroll;
 
+pub use edge_method::{Criterion, EdgeMethod, EdgeMethodEntry, LoopRow, loop_rows};
 pub use options::{Bound, Cancel, Options};
 pub use report::{FaceReport, PartReport, StageSeconds};
 pub use rounds::tessellate_part;

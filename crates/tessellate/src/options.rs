@@ -1,5 +1,6 @@
 //! What is asked of a mesh, in the units of the part.
 
+use crate::edge_method::EdgeMethod;
 use crate::strategy::Strategy;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,6 +34,7 @@ pub struct Options {
     pub strategy: Strategy,
     /// Keep the quadrilaterals of the strategy, where it makes some, as pairs of triangles.
     pub quads: bool,
+    pub edge_method: EdgeMethod,
     /// Report the cells of subdivisions, to be drawn.
     pub record_cells: bool,
     /// Time after which a face is given up.
@@ -51,6 +53,7 @@ impl Options {
             bound: Bound::Proven,
             strategy: Strategy::Default,
             quads: false,
+            edge_method: EdgeMethod::Default,
             record_cells: false,
             face_timeout: None,
             face_triangles: 20_000_000,
@@ -82,6 +85,10 @@ impl Options {
     }
     pub fn with_quads(mut self, quads: bool) -> Self {
         self.quads = quads;
+        self
+    }
+    pub fn with_edge_method(mut self, method: EdgeMethod) -> Self {
+        self.edge_method = method;
         self
     }
     pub fn with_cells_recorded(mut self, record: bool) -> Self {

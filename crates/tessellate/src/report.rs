@@ -45,6 +45,8 @@ pub struct StageSeconds {
 pub struct PartReport {
     /// One per face of the part, in its order.
     pub faces: Vec<FaceReport>,
+    /// Which parts made polylines of the edges, where that was not left to the default.
+    pub edge_trace: Trace,
     /// Rounds in which faces asked for finer edges.
     pub rounds: usize,
     pub seconds: StageSeconds,

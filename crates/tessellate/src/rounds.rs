@@ -44,6 +44,11 @@ fn diagonal(part: &Part) -> f64 {
     if low.is_finite() && high != low { (high - low).length() } else { f64::INFINITY }
 }
 
+/// Points of the part nearer together than this are one point.
+pub(crate) fn resolution(part: &Part, tolerance: f64) -> f64 {
+    (SAME_POINT * tolerance).min(SAME_POINT_OF_PART * diagonal(part))
+}
+
 /// Why a face is not even tried.
 fn unusable(face: &Face) -> Option<String> {
     match &face.geometry {
@@ -79,7 +84,7 @@ pub fn tessellate_part(
 ) -> (PartMesh, PartReport) {
     let mut report = PartReport::default();
     let clock = Instant::now();
-    let resolution = (SAME_POINT * options.tolerance).min(SAME_POINT_OF_PART * diagonal(part));
+    let resolution = resolution(part, options.tolerance);
     let exact: Vec<Option<std::borrow::Cow<'_, Surface>>> = part.faces.iter().map(exact_surface).collect();
     let surfaces = exact.iter().map(|s| s.as_deref().map(|s| FaceSurface::new(s, resolution))).collect();
     let job = Job {
@@ -101,6 +106,7 @@ pub fn tessellate_part(
     let clock = Instant::now();
     let mut edges = job.sample_edges();
     report.seconds.edges = clock.elapsed().as_secs_f64();
+    edges.iter().for_each(|e| report.edge_trace.merge(&e.trace));
 
     let clock = Instant::now();
     let outcomes = job.rounds(&mut edges, &mut report, done);
@@ -173,8 +179,9 @@ impl Job<'_> {
             })
             .collect();
         let edge = &self.part.edges[index];
-        let sampled =
-            catch_unwind(AssertUnwindSafe(|| EdgeSamples::new(self.part, edge, &uses, &self.limits, least)));
+        let sampled = catch_unwind(AssertUnwindSafe(|| {
+            EdgeSamples::new(self.part, edge, &uses, &self.limits, self.options.edge_method, least)
+        }));
         sampled.unwrap_or_default()
     }
 

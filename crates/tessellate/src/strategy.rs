@@ -5,6 +5,8 @@
 //! loops, and how the polygons become triangles. Every part that ran leaves its name in the [`trace::Trace`], which
 //! the report shows. `docs/strategies.md` says which document each method comes from.
 
+pub(crate) mod node;
+pub(crate) mod quadtree;
 pub(crate) mod trace;
 
 pub(crate) mod bezier;
@@ -18,12 +20,10 @@ mod derivatives;
 mod grid;
 mod kd;
 mod loop_tree;
-mod node;
 mod plain;
 mod poles;
 mod polygons;
 mod projected;
-mod quadtree;
 mod recursive;
 mod region;
 mod run;

@@ -45,6 +45,19 @@ pub struct LiftedPiece {
     pub error: f64,
 }
 
+/// A piece of a trimming curve over one polynomial piece of the surface, and that.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchPiece {
+    /// The part of the whole trimming curve, whose parameters run from 0 to 1.
+    pub range: Range,
+    /// In the surface's parameters.
+    pub uv: BezierCurve<DVec2>,
+    /// In the patch's own, which map the cell to the unit square.
+    pub local: BezierCurve<DVec2>,
+    pub cell: UvBox,
+    pub patch: BezierPatch,
+}
+
 /// Pieces of the plane curve shorter than this share of it are rounding at a knot line.
 const SHORTEST: f64 = 1e-12;
 
@@ -64,34 +77,41 @@ impl NurbsSurface {
         curve: &BezierCurve<DVec2>,
         options: LiftOptions,
     ) -> Result<Vec<LiftedPiece>, NurbsError> {
+        self.lift_onto_patches(curve, options)
+            .into_iter()
+            .map(|piece| {
+                let (xyz, error) = reduced(piece.patch.compose(&piece.local)?, &options);
+                Ok(LiftedPiece { range: piece.range, uv: piece.uv, xyz, error })
+            })
+            .collect()
+    }
+
+    /// The stretches of a Bézier curve in the plane of parameters over one polynomial piece of the surface each, without
+    /// the degrees that it does not need.
+    pub fn lift_onto_patches(&self, curve: &BezierCurve<DVec2>, options: LiftOptions) -> Vec<PatchPiece> {
         let plane = without_spare_degrees(curve, options.lossless).0;
         let mut patches = BTreeMap::new();
-        let mut pieces = Vec::new();
-        for pair in self.cuts(&plane).windows(2) {
-            let range = Range::new(pair[0], pair[1]);
-            let uv = plane.restricted(range.start, range.end);
+        let cuts = self.cuts(&plane);
+        let piece = |pair: &[f64]| {
+            let uv = plane.restricted(pair[0], pair[1]);
             let middle = self.domain().clamp(uv.eval(0.5));
-            let (cell, patch) = self.patch_under(middle, &mut patches);
-            let composed = patch.compose(&uv.in_unit_square(cell))?;
-            let (xyz, error) = reduced(composed, &options);
-            pieces.push(LiftedPiece { range, uv, xyz, error });
-        }
-        Ok(pieces)
+            let (cell, patch) = self.patch_under(middle, &mut patches).clone();
+            let local = uv.in_unit_square(&cell);
+            PatchPiece { range: Range::new(pair[0], pair[1]), uv, local, cell, patch }
+        };
+        cuts.windows(2).map(piece).collect()
     }
 
     /// Parameters from 0 to 1 between which the curve stays on one side of every knot line.
     fn cuts(&self, curve: &BezierCurve<DVec2>) -> Vec<f64> {
-        let net = curve.homogeneous();
         let size = self.domain().size();
-        let mut cuts = vec![0.0, 1.0];
+        let mut cuts = Vec::new();
         for (axis, breaks) in [self.breaks_u(), self.breaks_v()].into_iter().enumerate() {
-            let inner = &breaks[1..breaks.len() - 1];
-            for &value in inner {
-                let beyond: Vec<f64> = net.iter().map(|h| h.v[axis] - value * h.w).collect();
-                let heaviest = net.iter().fold(0.0f64, |m, h| m.max(h.w.abs()));
-                cuts.extend(sign_changes(&beyond, ON_LINE * size[axis] * heaviest));
+            for &value in &breaks[1..breaks.len() - 1] {
+                cuts.extend(curve.crossings(axis, value, ON_LINE * size[axis]));
             }
         }
+        cuts.push(1.0);
         cuts.sort_unstable_by(f64::total_cmp);
         let mut kept = vec![0.0];
         for t in cuts {
@@ -119,6 +139,17 @@ impl NurbsSurface {
             );
             found.into_iter().next().expect("every point of the domain lies in a span")
         })
+    }
+}
+
+impl BezierCurve<DVec2> {
+    /// Parameters strictly between 0 and 1 at which the curve changes sides of the line where coordinate `axis` is `value`,
+    /// increasing. Control points within `on_line` of it are on it.
+    pub fn crossings(&self, axis: usize, value: f64, on_line: f64) -> Vec<f64> {
+        let net = self.homogeneous();
+        let beyond: Vec<f64> = net.iter().map(|h| h.v[axis] - value * h.w).collect();
+        let heaviest = net.iter().fold(0.0f64, |m, h| m.max(h.w.abs()));
+        sign_changes(&beyond, on_line * heaviest)
     }
 }
 

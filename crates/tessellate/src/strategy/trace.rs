@@ -16,6 +16,11 @@ impl Trace {
         }
     }
 
+    /// Books all that another one has.
+    pub fn merge(&mut self, other: &Trace) {
+        other.0.iter().for_each(|&(part, count)| self.add(part, count));
+    }
+
     /// The parts that ran, each with what it made.
     pub fn parts(&self) -> impl Iterator<Item = (&'static str, usize)> + '_ {
         self.0.iter().copied()
