@@ -41,6 +41,7 @@ class Settings:
     threads: int
     reuse: bool
     verify: bool
+    extra: tuple[str, ...] = ()
 
 
 @dataclass
@@ -134,7 +135,7 @@ def mesh_model(model: Path, tolerance: str, settings: Settings) -> Meshing:
     for old in (mesh, report, log, settings.out / f"{model.name}.verify.json"):
         old.unlink(missing_ok=True)
     command = [settings.binary, "mesh", model, "-o", mesh, "--tolerance", tolerance, "--angle", settings.angle,
-               "--jobs", str(settings.threads), "--report", report, "--quiet"]
+               "--jobs", str(settings.threads), "--report", report, "--quiet", *settings.extra]
     started = time.perf_counter()
     try:
         done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=settings.mesh_timeout)

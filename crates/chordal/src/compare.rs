@@ -53,6 +53,19 @@ pub struct ComparedRow {
     pub rounds: usize,
     /// Which parts of the tessellator ran.
     pub stages: Vec<StageEntry>,
+    pub phases: PhaseSeconds,
+}
+
+/// Seconds of the phases of a strategy by cells, in the last attempt at each face, summed over faces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PhaseSeconds {
+    /// Splines to the pieces that the strategy begins with.
+    pub conversion: f64,
+    pub subdivision: f64,
+    /// Following trimming curves over cells.
+    pub traversal: f64,
+    /// Trimming and triangulation.
+    pub triangulation: f64,
 }
 
 /// One part of the tessellator.
@@ -135,6 +148,10 @@ fn row(model: &Model, resolved: &Resolved, parts: &[MeshedPart], fewest: f64) ->
         row.edges += instances * part.mesh.edges.iter().map(|e| e.len().saturating_sub(1)).sum::<usize>();
         row.rounds = row.rounds.max(part.report.rounds);
         for face in &part.report.faces {
+            row.phases.conversion += face.phases.conversion;
+            row.phases.subdivision += face.phases.subdivision;
+            row.phases.traversal += face.phases.traversal;
+            row.phases.triangulation += face.phases.triangulation;
             row.failed_faces += instances * usize::from(face.failed.is_some());
             let proven = Some(face.proven_error * scale).filter(|e| e.is_finite());
             if face.triangles > 0 {

@@ -46,7 +46,7 @@ mod whole_file;
 pub use against::{AgainstReport, WorstFace};
 pub use area::area;
 pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
-pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, StageEntry, compare, plot};
+pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, StageEntry, compare, plot};
 pub use convert::{ConvertOptions, Converted, convert};
 pub use error::JobError;
 pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};

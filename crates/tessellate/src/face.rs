@@ -6,6 +6,7 @@ use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Bound, Cancel, Options};
 use crate::place::Rows;
 use crate::prove::{Prover, Verdict};
+use crate::report::Phases;
 use crate::strategy::{self, Strategy, bezier::pairs, trace::Trace};
 use crate::triangulate::{Location, NONE, Triangulation, clip_ears, orient, sweep};
 use crate::unroll::{Chart, SEAM_CHORD};
@@ -32,8 +33,9 @@ pub(crate) struct FaceResult {
     pub bound: &'static str,
     /// c·∫√|K| dA / ε, and the strips of a singly curved face.
     pub curvature_bound: f64,
-    /// Which parts ran.
+    /// Which parts ran, and how long.
     pub trace: Trace,
+    pub phases: Phases,
     /// The cells of a subdivision, where they are asked for.
     pub cells: Vec<UvBox>,
 }
@@ -131,6 +133,7 @@ pub(crate) struct FaceWork<'a, 's> {
     floor: f64,
     shape: Shape,
     pub trace: Trace,
+    pub phases: Phases,
     pub cells: Vec<UvBox>,
     /// Corners of quadrilaterals that were made of two triangles each.
     pub quads: Vec<[u32; 4]>,
@@ -174,6 +177,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             shape,
             chart,
             trace: Trace::default(),
+            phases: Phases::default(),
             cells: Vec::new(),
             quads: Vec::new(),
         };
@@ -467,6 +471,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             bound,
             curvature_bound,
             trace: self.trace,
+            phases: self.phases,
             cells: self.cells,
         }
     }

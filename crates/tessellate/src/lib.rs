@@ -28,7 +28,7 @@ mod unroll;
 
 pub use edge_method::{Criterion, EdgeMethod, EdgeMethodEntry, LoopRow, loop_rows};
 pub use options::{Bound, Cancel, Options};
-pub use report::{FaceReport, PartReport, StageSeconds};
+pub use report::{FaceReport, PartReport, Phases, StageSeconds};
 pub use rounds::tessellate_part;
 pub use strategy::trace::Trace;
 pub use strategy::{Cut, Fill, Strategy, StrategyEntry, Stretch};

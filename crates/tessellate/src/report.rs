@@ -23,12 +23,27 @@ pub struct FaceReport {
     pub lower_bound: f64,
     /// Which parts of the tessellator ran, and what each made.
     pub trace: Trace,
+    /// Time of the phases of its strategy, in the last attempt.
+    pub phases: Phases,
     /// The cells of its subdivision in the chart, where they were asked for.
     pub cells: Vec<UvBox>,
     /// Why the face has no triangles, or not good enough ones.
     pub failed: Option<String>,
     /// The face is so thin that it has no area at the model's own accuracy; it has no triangles and needs none.
     pub zero_area: bool,
+}
+
+/// Time spent in the phases of a strategy by cells, in seconds (the rows of the table of Kahlesz, Balázs, Klein 2001).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Phases {
+    /// Splines to their Bézier pieces, or to the cells that a strategy begins with.
+    pub conversion: f64,
+    /// Subdivision.
+    pub subdivision: f64,
+    /// Following trimming curves over the cells.
+    pub traversal: f64,
+    /// Cutting cells with loops, and polygons into triangles.
+    pub triangulation: f64,
 }
 
 /// Time spent in each stage, in seconds; summed over threads for the stages that run per face.

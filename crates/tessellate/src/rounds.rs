@@ -335,6 +335,7 @@ impl Job<'_> {
                     entry.gap = result.gap;
                     entry.pcurve_gap = pcurve_gaps[index];
                     entry.bound = result.bound;
+                    entry.phases = result.phases;
                     entry.trace = result.trace.clone();
                     entry.cells.clone_from(&result.cells);
                     entry.zero_area = result.triangles.is_empty();

@@ -19,6 +19,7 @@ mod delaunay;
 mod derivatives;
 mod grid;
 mod kd;
+mod leaf_mesh;
 mod loop_tree;
 mod plain;
 mod poles;
@@ -30,6 +31,7 @@ mod run;
 mod scanlines;
 #[cfg(test)]
 mod testing;
+mod tracking;
 
 pub use delaunay::Fill;
 pub use quadtree::Stretch;

@@ -31,6 +31,7 @@ use crate::face::FaceWork;
 use crate::triangulate::Triangulation;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 use rustc_hash::FxHashSet;
+use std::time::Instant;
 
 /// Bézier patches of one face.
 pub(crate) struct BezierQuads {
@@ -91,7 +92,10 @@ fn height(work: &FaceWork<'_, '_>, b: UvBox) -> f64 {
 
 impl Method for BezierQuads {
     fn build(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<(), String> {
+        let clock = Instant::now();
         self.cells.refine(&ProjectedNet, &self.region, self.tolerance, self.measure, check)?;
+        work.phases.subdivision += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
         let (kept, inside) = self.kept();
         let found = cut(work, &self.region, &kept);
         let borders = Borders::new(&kept);
@@ -99,6 +103,7 @@ impl Method for BezierQuads {
             kept.iter().zip(&inside).filter(|(_, inside)| **inside).map(|(b, _)| *b).collect();
         let closed = close(work, &found.fixed, &whole);
         let opened = open_out(work);
+        work.phases.triangulation += clock.elapsed().as_secs_f64();
         let trace = &mut work.trace;
         trace.add(ProjectedNet.name(), kept.len());
         trace.add("scanlines", self.lines.count());

@@ -14,6 +14,8 @@ pub(crate) struct Borders {
     pub extent: Vec<DVec2>,
     /// Pieces of sides between successive corners (along u where both have the same v), each once, smaller index first.
     pub pieces: Vec<(u32, u32)>,
+    /// The corners by u, then by v.
+    columns: Vec<u32>,
 }
 
 /// By v, then by u.
@@ -61,7 +63,21 @@ impl Borders {
         }
         pieces.sort_unstable();
         pieces.dedup();
-        Self { corners, extent, pieces }
+        Self { corners, extent, pieces, columns }
+    }
+
+    /// The corners around a cell, counter-clockwise from its lower left one; corners of smaller neighbours in its sides
+    /// included.
+    pub fn ring(&self, cell: UvBox) -> Vec<u32> {
+        let row = |p: DVec2| self.corners.partition_point(|q| by_rows(q, &(p + 0.0)).is_lt());
+        let corner = |i: u32| &self.corners[i as usize];
+        let column = |p: DVec2| self.columns.partition_point(|&q| by_columns(corner(q), &(p + 0.0)).is_lt());
+        let (low_right, high_left) = (DVec2::new(cell.max.x, cell.min.y), DVec2::new(cell.min.x, cell.max.y));
+        let mut ring: Vec<u32> = (row(cell.min) as u32..row(low_right) as u32).collect();
+        ring.extend(&self.columns[column(low_right)..column(cell.max)]);
+        ring.extend((row(high_left) as u32 + 1..=row(cell.max) as u32).rev());
+        ring.extend(self.columns[column(cell.min) + 1..=column(high_left)].iter().rev());
+        ring
     }
 }
 
@@ -85,5 +101,10 @@ mod tests {
         }
         let t = borders.corners.iter().position(|&p| p == DVec2::new(1.0, 1.0)).expect("there");
         assert_eq!(borders.extent[t], DVec2::ONE);
+        let around =
+            |c: UvBox| borders.ring(c).iter().map(|&i| borders.corners[i as usize]).collect::<Vec<_>>();
+        let expected = [(-1., 0.), (1., 0.), (1., 1.), (1., 2.), (-1., 2.)].map(DVec2::from);
+        assert_eq!(around(cells[0]), expected);
+        assert_eq!(around(cells[1]), [(1., 0.), (2., 0.), (2., 1.), (1., 1.)].map(DVec2::from));
     }
 }

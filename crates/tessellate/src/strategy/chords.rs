@@ -1,37 +1,74 @@
 //! Chords of trimming curves judged in the plane of parameters, leaf by leaf.
 //!
 //! Source: Kahlesz, Balázs, Klein 2001, section 6: over each leaf a curve may lie as far from its chord as the leaf's stretch of
-//! lengths allows ([`super::quadtree`]). The document cuts curves at the borders of leaves; here a chord belongs to
-//! the leaf that holds its middle, as borders set no vertices on edges. Distances are samples of the edge's curve,
-//! brought back onto the surface: a choice of where to cut, not a proof.
+//! lengths allows ([`super::quadtree`]). The document cuts curves at the borders of leaves and approximates every piece by itself.
+//! Here the curve over a chord is followed over the leaves in the same way ([`super::tracking`]), but borders set no vertices on
+//! edges: the chord must be near enough to the curve in every leaf that it passes. How near is bounded by the control points
+//! of the piece over the leaf.
 
 use super::cells::{Cells, Rule};
+use super::leaf_mesh::LeafMesh;
+use super::tracking::track;
 use crate::chart::Segment;
 use crate::face::FaceWork;
-use chordal_nurbs::DVec2;
+use chordal_brep::{Face, Loop, Pcurve};
+use chordal_nurbs::{BezierCurve, DVec2, Range};
 
-/// The chords (edge, index) that lie farther from their curves than the rule allows; none where it has no opinion.
-pub(crate) fn coarse_chords(work: &FaceWork<'_, '_>, cells: &Cells, rule: &dyn Rule) -> Vec<(u32, u32)> {
-    let tolerance = work.limits.tolerance;
+/// What following the curves found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct JudgedChords {
+    /// Chords (edge, index) that lie farther from their curves than the rule allows.
+    pub coarse: Vec<(u32, u32)>,
+    /// How often each transition of the state machine was taken.
+    pub transitions: [usize; 4],
+    /// Curves that could not be followed to their end; they were judged by samples.
+    pub lost: usize,
+    /// Edges of leaves along which a curve ran.
+    pub directed: usize,
+}
+
+/// Judges the chords of all loops; nothing where the rule has no opinion.
+pub(crate) fn judge_chords(work: &FaceWork<'_, '_>, cells: &Cells, rule: &dyn Rule) -> JudgedChords {
+    let tolerance = work.limits.boundary;
+    let mut found = JudgedChords::default();
     let asked = cells.leaves.first().and_then(|leaf| rule.chord_share(&leaf.piece, tolerance));
     if asked.is_none() {
-        return Vec::new();
+        return found;
     }
     let chords = chords(work);
-    let middles: Vec<DVec2> = chords.iter().map(|c| c.uv[0].midpoint(c.uv[1])).collect();
-    let leaves = cells.leaf_of_each(&middles);
-    let mut coarse: Vec<(u32, u32)> = chords
+    let mut mesh = LeafMesh::new(cells.leaves.iter().map(|leaf| leaf.bounds).collect());
+    let shares: Vec<f64> = cells
+        .leaves
         .iter()
-        .zip(leaves)
-        .filter_map(|(chord, leaf)| {
-            let leaf = &cells.leaves[leaf?];
-            let share = rule.chord_share(&leaf.piece, tolerance)?;
-            (deviation(work, chord, leaf.bounds.size()) > share).then_some((chord.edge, chord.index))
-        })
+        .map(|leaf| rule.chord_share(&leaf.piece, tolerance).unwrap_or(f64::INFINITY))
         .collect();
-    coarse.sort_unstable();
-    coarse.dedup();
-    coarse
+    let middles: Vec<DVec2> = chords.iter().map(|c| c.uv[0].midpoint(c.uv[1])).collect();
+    for (chord, middle) in chords.iter().zip(cells.leaf_of_each(&middles)) {
+        let curve = planar(work, chord);
+        let tracked = track(&mut mesh, &curve);
+        let sum = |i: usize| found.transitions[i] + tracked.transitions[i];
+        found.transitions = std::array::from_fn(sum);
+        let is_coarse = if tracked.lost {
+            found.lost += 1;
+            middle.is_some_and(|leaf| {
+                let size = cells.leaves[leaf].bounds.size();
+                curve.iter().any(|c| farthest(c, chord.uv, size) > shares[leaf])
+            })
+        } else {
+            tracked.pieces.iter().any(|piece| {
+                let Some(leaf) = piece.leaf.map(|leaf| leaf as usize) else { return false };
+                let over_leaf = curve[piece.curve].restricted(piece.range[0], piece.range[1]);
+                farthest(&over_leaf, chord.uv, cells.leaves[leaf].bounds.size()) > shares[leaf]
+            })
+        };
+        if is_coarse {
+            found.coarse.push((chord.edge, chord.index));
+        }
+    }
+    found.directed = mesh.edges.values().filter(|e| e.forward.is_some()).count();
+    found.coarse.sort_unstable();
+    found.coarse.dedup();
+    found
 }
 
 struct Chord {
@@ -57,20 +94,74 @@ fn chords(work: &FaceWork<'_, '_>) -> Vec<Chord> {
     work.chart.loops.iter().flat_map(ring).filter_map(chord).collect()
 }
 
-/// The largest distance of the curve's parameters from the chord, lengths counted in `size` per direction.
-fn deviation(work: &FaceWork<'_, '_>, chord: &Chord, size: DVec2) -> f64 {
-    let samples = &work.context.edges[chord.edge as usize];
-    let Some(curve) = work.context.part.edges[chord.edge as usize].curve.as_deref() else { return 0.0 };
-    let (from, to) = (samples.t[chord.index as usize], samples.t[chord.index as usize + 1]);
-    let [a, b] = chord.uv;
+/// The largest distance of the control points, and so of the curve, from the line through a chord; lengths counted in `size`
+/// per direction.
+fn farthest(curve: &BezierCurve<DVec2>, [a, b]: [DVec2; 2], size: DVec2) -> f64 {
     let d = (b - a) / size;
-    [0.25, 0.5, 0.75].iter().fold(0.0f64, |largest, &s| {
-        let along = if chord.forward { s } else { 1.0 - s };
-        let start = a.lerp(b, along);
-        let uv = work.context.surface.descend(curve.point(from + s * (to - from)), start);
-        let off = (uv - a) / size;
-        let distance = off.perp_dot(d).abs() / d.length().max(f64::MIN_POSITIVE);
-        // Where the search left the chord's surroundings, it found another part of the surface.
-        if (uv - start).length() > (b - a).length() { largest } else { largest.max(distance) }
+    let off = |p: &DVec2| ((*p - a) / size).perp_dot(d).abs() / d.length().max(f64::MIN_POSITIVE);
+    curve.points.iter().map(off).fold(0.0, f64::max)
+}
+
+/// The curve over a chord in the plane of the chart: the file's own where it has one that ends where the chord does, else a cubic
+/// through four points of the edge, brought back onto the surface.
+fn planar(work: &FaceWork<'_, '_>, chord: &Chord) -> Vec<BezierCurve<DVec2>> {
+    from_file(work, chord).unwrap_or_else(|| vec![through_samples(work, chord)])
+}
+
+/// The file's curves of an edge on a face; two of a seam.
+fn pcurves(face: &Face, edge: u32) -> impl Iterator<Item = &Pcurve> {
+    let coedges = face.loops.iter().flat_map(|a_loop| match a_loop {
+        Loop::Edges { coedges, .. } => &coedges[..],
+        _ => &[],
+    });
+    coedges.filter(move |c| c.edge.index() == edge as usize).flat_map(|c| &c.pcurves)
+}
+
+/// Ends of the file's curve may differ by this share of the chord's length.
+const AGREES: f64 = 1e-3;
+
+fn from_file(work: &FaceWork<'_, '_>, chord: &Chord) -> Option<Vec<BezierCurve<DVec2>>> {
+    let edge = &work.context.part.edges[chord.edge as usize];
+    let t = &work.context.edges[chord.edge as usize].t;
+    let [a, b] = chord.uv;
+    let share = |t: f64| (t - edge.range.start) / edge.range.length();
+    pcurves(work.context.face, chord.edge).find_map(|pcurve| {
+        let own = |t: f64| pcurve.range.start + share(t) * pcurve.range.length();
+        let range = Range::new(own(t[chord.index as usize]), own(t[chord.index as usize + 1]));
+        let mut pieces: Vec<BezierCurve<DVec2>> =
+            pcurve.curve.to_nurbs(range).ok()?.bezier_pieces().into_iter().map(|(_, piece)| piece).collect();
+        if !chord.forward {
+            pieces.reverse();
+            pieces.iter_mut().for_each(|piece| *piece = piece.reversed());
+        }
+        // The chart may lie whole periods beside the file's curve.
+        let shift = a - *pieces.first()?.points.first()?;
+        pieces.iter_mut().for_each(|piece| *piece = piece.mapped(|p| p + shift));
+        let end = *pieces.last()?.points.last()?;
+        let agrees = (end - b).length() <= AGREES * (b - a).length();
+        let turns = |axis: usize| match work.context.surface.periods[axis] {
+            Some(period) => (shift[axis] / period - (shift[axis] / period).round()).abs() * period,
+            None => shift[axis].abs(),
+        };
+        (agrees && DVec2::new(turns(0), turns(1)).length() <= AGREES * (b - a).length()).then_some(pieces)
     })
+}
+
+fn through_samples(work: &FaceWork<'_, '_>, chord: &Chord) -> BezierCurve<DVec2> {
+    let [a, b] = chord.uv;
+    let straight = BezierCurve { points: vec![a, b], weights: None };
+    let samples = &work.context.edges[chord.edge as usize];
+    let Some(curve) = work.context.part.edges[chord.edge as usize].curve.as_deref() else { return straight };
+    let (from, to) = (samples.t[chord.index as usize], samples.t[chord.index as usize + 1]);
+    let at = |s: f64| {
+        let along = if chord.forward { s } else { 1.0 - s };
+        let start = a.lerp(b, s);
+        let uv = work.context.surface.descend(curve.point(from + along * (to - from)), start);
+        // Where the search left the chord's surroundings, it found another part of the surface.
+        ((uv - start).length() <= (b - a).length()).then_some(uv)
+    };
+    let (Some(p), Some(q)) = (at(1.0 / 3.0), at(2.0 / 3.0)) else { return straight };
+    let (low, high) =
+        ((p * 18.0 - q * 9.0 - a * 5.0 + b * 2.0) / 6.0, (q * 18.0 - p * 9.0 - b * 5.0 + a * 2.0) / 6.0);
+    BezierCurve { points: vec![a, low, high, b], weights: None }
 }

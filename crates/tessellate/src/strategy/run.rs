@@ -3,7 +3,7 @@
 use super::Strategy;
 use super::bezier::BezierQuads;
 use super::cells::{Cells, Rule};
-use super::chords::coarse_chords;
+use super::chords::judge_chords;
 use super::cut::cut;
 use super::delaunay::Delaunay;
 use super::grid::{ControlCells, UniformGrid};
@@ -20,6 +20,7 @@ use crate::options::{Bound, Options};
 use crate::prove::{Fault, Prover, Verdict};
 use crate::triangulate::Triangulation;
 use chordal_nurbs::{DVec2, UvBox};
+use std::time::Instant;
 
 /// So often a strategy may refine what the proof found too coarse; what is left then is mended as the default does.
 const ROUNDS: usize = 24;
@@ -43,7 +44,7 @@ pub(crate) trait Method {
     fn refine(&mut self, coarse: &[DVec2]) -> bool;
 
     /// Chords (edge, index) that the method itself finds too coarse.
-    fn coarse_chords(&self, _work: &FaceWork<'_, '_>) -> Vec<(u32, u32)> {
+    fn coarse_chords(&self, _work: &mut FaceWork<'_, '_>) -> Vec<(u32, u32)> {
         Vec::new()
     }
 
@@ -66,17 +67,29 @@ struct ByCells {
     halvings: usize,
 }
 
+/// The transitions of the state machine that follows trimming curves over leaves, by their numbers.
+const TRANSITIONS: [&str; 4] = [
+    "curves reach a border (1)",
+    "curves leave a vertex over a leaf (2)",
+    "curves end inside a leaf (3)",
+    "curves run along a border (4)",
+];
+
 /// Uniform subdivisions are halved at most this often: each time costs four times the triangles, and what is still too
 /// coarse then lies where loops cut cells, which smaller cells do not mend.
 const HALVINGS: usize = 1;
 
 impl Method for ByCells {
     fn build(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<(), String> {
+        let clock = Instant::now();
         self.cells.refine(&*self.rule, &self.region, self.tolerance, self.measure, check)?;
+        work.phases.subdivision += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
         let met = self.drawing();
         let found = cut(work, &self.region, &met);
         retriangulate(&mut work.mesh, &found.fixed, self.filling, &mut work.trace);
         let opened = open_out(work);
+        work.phases.triangulation += clock.elapsed().as_secs_f64();
         work.trace.add(self.rule.name(), met.len());
         work.trace.add("corners of cells", found.corners);
         work.trace.add("borders cut by loops", found.crossings);
@@ -95,8 +108,16 @@ impl Method for ByCells {
         self.cells.cut_at(coarse, &*self.rule, &self.region, self.measure)
     }
 
-    fn coarse_chords(&self, work: &FaceWork<'_, '_>) -> Vec<(u32, u32)> {
-        coarse_chords(work, &self.cells, &*self.rule)
+    fn coarse_chords(&self, work: &mut FaceWork<'_, '_>) -> Vec<(u32, u32)> {
+        let clock = Instant::now();
+        let judged = judge_chords(work, &self.cells, &*self.rule);
+        work.phases.traversal += clock.elapsed().as_secs_f64();
+        for (name, count) in TRANSITIONS.iter().zip(judged.transitions) {
+            work.trace.add(name, count);
+        }
+        work.trace.add("edges of leaves along curves", judged.directed);
+        work.trace.add("curves judged by samples", judged.lost);
+        judged.coarse
     }
 
     fn drawing(&self) -> Vec<UvBox> {
@@ -133,7 +154,9 @@ pub(crate) fn fill(
     prover: &mut Prover<'_>,
     options: &Options,
 ) -> Result<Verdict, String> {
+    let clock = Instant::now();
     let mut method = method(work, options.strategy, options.bound)?;
+    work.phases.conversion += clock.elapsed().as_secs_f64();
     let verdict = refine(work, prover, &mut *method, options.bound);
     if options.record_cells {
         work.cells = method.drawing();

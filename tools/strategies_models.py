@@ -1,0 +1,227 @@
+#!/usr/bin/env python
+"""Meshes every STEP file of a folder by every strategy, proven and estimated, measures the meshes, writes one table.
+
+    tools/strategies_models.py [--models ../shared/models/step] [--only PATTERN ...] [--skip PATTERN ...] [--largest KB]
+                               [--strategies NAME ...] [--bounds proven estimated] [--tolerance 0.1%] [--jobs 2]
+                               [--timeout 120] [--reuse] [--no-verify] [--measure proven estimated] [--out out/strategies] [--results docs/results/strategies-models]
+
+One run of the binary per model, strategy and bound; the verifier's reference of a model is built once for all of its
+meshes. A run that does not end in --timeout seconds is a line that says so. Small files come first. Meshes are
+removed as soon as they are measured; reports stay in --out, and --reuse takes what lies there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import fnmatch
+import json
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from measure_models import SUFFIXES, Meshing, Settings, expected_faces, measure_meshes, mesh_model
+from measure_row import row_of
+
+
+@dataclass
+class Line:
+    """One model by one strategy with one bound."""
+
+    model: str
+    strategy: str
+    bound: str
+    exit: int | None
+    seconds: float
+    triangles: int | None = None
+    ratio: float | None = None
+    tolerance: float | None = None
+    proven: float | None = None
+    gap: float | None = None
+    measured: float | None = None
+    closed: bool | None = None
+    failed: int | None = None
+    faults: tuple[str, ...] = ()
+
+
+def main() -> int:
+    args = arguments()
+    args.out.mkdir(parents=True, exist_ok=True)
+    names = args.strategies or strategies(args.binary)
+    if "default" not in names:
+        names.insert(0, "default")
+    models = [p for p in args.models.iterdir() if p.suffix.lower() in SUFFIXES and wanted(p, args)]
+    models.sort(key=lambda p: p.stat().st_size)
+    expected = expected_faces(args.models)
+    with ThreadPoolExecutor(args.jobs) as pool:
+        found = list(pool.map(lambda m: measure(m, names, args, expected), models))
+    lines = [line for of_model in found for line in of_model]
+    text = table(lines, names, args)
+    args.results.with_suffix(".md").write_text(text, encoding="utf-8")
+    args.results.with_suffix(".tsv").write_text(tsv(lines), encoding="utf-8")
+    faults = sum(bool(line.faults) for line in lines)
+    print(f"{len(lines)} meshes of {len(models)} models, {faults} with a fault -> {args.results}.md", file=sys.stderr)
+    return 1 if faults else 0
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--models", type=Path, default=Path("../shared/models/step"))
+    parser.add_argument("--only", nargs="+", default=["*"], help="shell patterns of file names")
+    parser.add_argument("--skip", nargs="+", default=[], help="shell patterns of file names to leave out")
+    parser.add_argument("--largest", type=float, default=float("inf"), help="leave out files larger than this (KB)")
+    parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
+    parser.add_argument("--verify", type=Path, default=Path("../shared/verify/verify.py"))
+    parser.add_argument("--strategies", nargs="+", default=[], help="names [default: all]")
+    parser.add_argument("--bounds", nargs="+", default=["proven", "estimated"], choices=["proven", "estimated"])
+    parser.add_argument("--tolerance", default="0.1%")
+    parser.add_argument("--out", type=Path, default=Path("out/strategies"))
+    parser.add_argument("--results", type=Path, default=Path("docs/results/strategies-models"))
+    parser.add_argument("--jobs", type=int, default=2, help="models at the same time")
+    parser.add_argument("--timeout", type=float, default=120, help="seconds for meshing one file once")
+    parser.add_argument("--verify-timeout", type=float, default=1800, help="seconds for measuring one file")
+    parser.add_argument("--reuse", action="store_true", help="take what lies in --out already")
+    parser.add_argument("--measure", nargs="+", default=["proven", "estimated"], help="bounds whose meshes are measured")
+    parser.add_argument("--no-verify", action="store_true", help="mesh only; the measured columns stay empty")
+    return parser.parse_args()
+
+
+def wanted(model: Path, args: argparse.Namespace) -> bool:
+    named = any(fnmatch.fnmatch(model.name, p) for p in args.only) and not any(
+        fnmatch.fnmatch(model.name, p) for p in args.skip)
+    return named and model.stat().st_size <= 1024 * args.largest
+
+
+def strategies(binary: Path) -> list[str]:
+    """The names that the binary knows, the default first."""
+    model = Path("corpus/ap203.step")
+    done = subprocess.run([binary, "compare", model, "--tolerance", "5%", "--json", "-q"], capture_output=True,
+                          text=True, check=True)
+    return [row["strategy"] for row in json.loads(done.stdout)["rows"]]
+
+
+def measure(model: Path, names: list[str], args: argparse.Namespace, expected: dict[str, int]) -> list[Line]:
+    """All meshes of one model."""
+    runs: list[tuple[str, str, Meshing]] = []
+    for name in names:
+        for bound in args.bounds:
+            settings = settings_for(args, args.out / model.name / f"{name}.{bound}", name, bound)
+            runs.append((name, bound, mesh_model(model, args.tolerance, settings)))
+    measured = {}
+    if not args.no_verify:
+        settings = settings_for(args, args.out / model.name, "", "")
+        measured = measure_meshes(model, [run for _, bound, run in runs if bound in args.measure], settings)
+    for _, _, run in runs:
+        run.mesh.unlink(missing_ok=True)
+    lines = [line_of(name, bound, run, measured.get(str(run.mesh)), expected.get(model.name)) for name, bound, run in runs]
+    judge(lines)
+    bad = [f"{line.strategy} {line.bound}: {', '.join(line.faults)}" for line in lines if line.faults]
+    print(f"{model.name}: {'; '.join(bad) or 'ok'}", file=sys.stderr, flush=True)
+    return lines
+
+
+def settings_for(args: argparse.Namespace, out: Path, strategy: str, bound: str) -> Settings:
+    out.mkdir(parents=True, exist_ok=True)
+    extra = ["--strategy", strategy, "--bound", bound] if strategy else []
+    return Settings(args.binary, args.verify, out, [args.tolerance], "off", args.timeout, args.verify_timeout, 1,
+                    args.reuse, not args.no_verify, tuple(extra))
+
+
+def line_of(name: str, bound: str, run: Meshing, measured: dict | None, faces: int | None) -> Line:
+    line = Line(run.model.name, name, bound, run.exit, run.seconds)
+    if run.exit not in (0, 1) or not run.report.exists():
+        return line
+    report = json.loads(run.report.read_text())
+    row = row_of(run, report, measured, faces)
+    line.triangles, line.ratio = report["triangles"], report["triangles"] / max(report["lower_bound"], 1)
+    line.tolerance, line.proven, line.gap = report["options"]["tolerance"], report["proven_error"], max(row.gap or 0.0, row.occ_edge_gap or 0.0)
+    line.closed = report["watertight"]
+    line.failed = sum(f["instances"] for f in report["faces"]["failed"])
+    line.measured = row.measured
+    return line
+
+
+def judge(lines: list[Line]) -> None:
+    """What the document promises: no crash, closed where the default is, proven ones within tolerance."""
+    default = {line.bound: line for line in lines if line.strategy == "default"}
+    for line in lines:
+        reference = default.get("proven", default.get(line.bound))
+        faults = []
+        if line.exit not in (0, 1):
+            faults.append("no mesh" if line.exit is not None else "out of time")
+        elif reference is not None and reference.triangles is not None:
+            if reference.closed and not line.closed:
+                faults.append("open")
+            if (line.failed or 0) > (reference.failed or 0):
+                faults.append("faces failed")
+            kept = reference.proven is not None and reference.proven <= reference.tolerance
+            if line.bound == "proven" and kept and not (line.proven is not None and line.proven <= line.tolerance):
+                faults.append("not proven")
+            if line.bound == "proven" and line.measured is not None and line.measured > line.tolerance + line.gap:
+                within = reference.measured is not None and reference.measured <= reference.tolerance + reference.gap
+                faults.append("out of tolerance" if within else "out of tolerance, as the default")
+        line.faults = tuple(faults)
+
+
+def table(lines: list[Line], names: list[str], args: argparse.Namespace) -> str:
+    models = {line.model for line in lines}
+    out = [
+        "# Every strategy on real models",
+        "",
+        f"`tools/strategies_models.py`: {len(models)} STEP files at {args.tolerance}, angle off, one thread, "
+        f"{args.timeout:g} s for each mesh.",
+        "*Closed* counts the models that the default closes and the strategy does, too; *within* those whose measured "
+        "error is at most tolerance + gap. Ratios are of the triangles to the fewest possible, over all models, their median.",
+        "",
+        "| strategy | bound | meshes | closed | proven | within | failed faces | triangles | median ratio | seconds |",
+        "|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    everywhere = complete(lines)
+    for name in names:
+        for bound in args.bounds:
+            out.append(summary([line for line in lines if (line.strategy, line.bound) == (name, bound)], everywhere))
+    out += ["", f"Triangles and seconds are sums over the {len(everywhere)} models that every strategy meshed in time.", ""]
+    bad = [line for line in lines if line.faults]
+    out += ["## Faults", ""] + (["None."] if not bad else [
+        "| model | strategy | bound | what | proven / tolerance | measured / (tolerance + gap) |", "|---|---|---|---|---|---|"])
+    for line in bad:
+        share = f"{line.proven / line.tolerance:.3f}" if line.proven is not None and line.tolerance else ""
+        far = f"{line.measured / (line.tolerance + line.gap):.3f}" if line.measured is not None else ""
+        out.append(f"| {line.model} | {line.strategy} | {line.bound} | {', '.join(line.faults)} | {share} | {far} |")
+    return "\n".join(out) + "\n"
+
+
+def complete(lines: list[Line]) -> set[str]:
+    """Models that every strategy meshed."""
+    return {line.model for line in lines} - {line.model for line in lines if line.triangles is None}
+
+
+def summary(own: list[Line], everywhere: set[str]) -> str:
+    done = [line for line in own if line.triangles is not None]
+    ratios = sorted(line.ratio for line in done if line.ratio is not None) or [float("nan")]
+    closed = sum(1 for line in done if "open" not in line.faults)
+    proven = sum(1 for line in done if line.proven is not None and line.proven <= line.tolerance)
+    within = [line for line in done if line.measured is not None]
+    kept = sum(1 for line in within if line.measured <= line.tolerance + line.gap)
+    common = [line for line in done if line.model in everywhere]
+    return (f"| {own[0].strategy} | {own[0].bound} | {len(done)} of {len(own)} | {closed} | {proven} | {kept} of {len(within)} | "
+            f"{sum(line.failed or 0 for line in done)} | {sum(line.triangles for line in common):,} | "
+            f"{ratios[len(ratios) // 2]:.2f} | {sum(line.seconds for line in common):.1f} |")
+
+
+def tsv(lines: list[Line]) -> str:
+    columns = ["model", "strategy", "bound", "exit", "seconds", "triangles", "ratio", "tolerance", "proven", "gap", "measured",
+               "closed", "failed", "faults"]
+    def cell(value: object) -> str:
+        if value is None:
+            return ""
+        if isinstance(value, tuple):
+            return ", ".join(value)
+        return f"{value:.6g}" if isinstance(value, float) else str(value)
+    rows = ["\t".join(cell(getattr(line, column)) for column in columns) for line in lines]
+    return "\n".join(["\t".join(columns), *rows]) + "\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
