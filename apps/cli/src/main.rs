@@ -11,6 +11,7 @@ mod info;
 mod mesh;
 mod outputs;
 mod progress;
+mod render;
 mod sew;
 
 use args::{Cli, Command};
@@ -43,6 +44,7 @@ fn run() -> Exit {
         Command::Info(args) => info::run(&args),
         Command::Sew(args) => sew::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Render(args) => render::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),

@@ -36,6 +36,8 @@ mod placement;
 mod process;
 mod progress;
 mod quantity;
+#[cfg(feature = "gpu")]
+mod render;
 pub mod report;
 mod resolve;
 mod scene;
@@ -57,6 +59,8 @@ pub use placement::{PartUse, part_uses};
 pub use process::peak_memory;
 pub use progress::{OnProgress, Progress};
 pub use quantity::{QuantityError, Tolerance, parse_angle, parse_length};
+#[cfg(feature = "gpu")]
+pub use render::{RenderError, RenderJob, Rendered, render};
 pub use report::{REPORT_SCHEMA, Report};
 pub use resolve::{Resolved, resolve};
 pub use sewing::{GapSurvey, OpenEntry, Sew, SewingEntry, sew_model};
@@ -66,6 +70,8 @@ pub use whole_file::write_whole;
 pub use chordal_audit as audit;
 pub use chordal_brep as brep;
 pub use chordal_document as document;
+#[cfg(feature = "gpu")]
+pub use chordal_gpu as gpu;
 pub use chordal_mesh as mesh;
 pub use chordal_nurbs as nurbs;
 pub use chordal_read as read;

@@ -1,13 +1,13 @@
-//! Text files that appear only when they are complete.
+//! Files that appear only when they are complete.
 
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes `text` to `path`: the file is replaced by the whole of it, or stays as it was.
+/// Writes `data` to `path`: the file is replaced by the whole of it, or stays as it was.
 ///
 /// # Errors
 /// Those of the file system.
-pub fn write_whole(path: &Path, text: &str) -> io::Result<()> {
+pub fn write_whole(path: &Path, data: impl AsRef<[u8]>) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".chordal-").suffix(".part");
@@ -18,7 +18,7 @@ pub fn write_whole(path: &Path, text: &str) -> io::Result<()> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(data.as_ref())?;
     file.persist(path)?;
     Ok(())
 }

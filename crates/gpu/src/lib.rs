@@ -5,6 +5,7 @@
 //! bounds stated at [`SurfaceEntry::point_bound`].
 
 mod device;
+mod draw;
 mod error;
 mod evaluate;
 mod kernels;
@@ -15,6 +16,10 @@ mod shaders;
 mod surfaces;
 
 pub use device::{DeviceChoice, Gpu};
+pub use draw::{
+    Background, Camera, Legend, Picture, Placed, Projection, RenderOptions, Renderer, Scenery, SectionPlane,
+    Shape, Style, Vertex, View, mesh_scenery,
+};
 pub use error::GpuError;
 pub use evaluate::{Evaluated, Evaluation, Evaluator, OnDevice, Search, Variant, Wanted, evaluate_twin};
 pub use real::Real;

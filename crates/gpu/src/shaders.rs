@@ -19,6 +19,17 @@ macro_rules! file {
     };
 }
 
+macro_rules! drawing {
+    ($name:literal) => {
+        Shader {
+            name: $name,
+            files: &[include_str!("draw/view.wgsl"), include_str!(concat!("draw/", $name, ".wgsl"))],
+            bindings: &[],
+            generic: false,
+        }
+    };
+}
+
 macro_rules! kernel {
     ($bindings:expr, $name:literal $(, $before:literal)*) => {
         Shader { name: $name, files: &[$(file!($before),)* file!($name)], bindings: $bindings, generic: true }
@@ -40,10 +51,12 @@ pub(crate) const DIRECT: Shader = kernel!(POINT_BINDINGS, "direct", "common", "s
 pub(crate) const BERNSTEIN: Shader = kernel!(POINT_BINDINGS, "bernstein", "common", "samples");
 pub(crate) const FIND_SPANS: Shader =
     kernel!(&[(0, true), (1, true), (2, false), (5, true), (7, false)], "find_spans", "common");
+pub(crate) const FACES: Shader = drawing!("faces");
+pub(crate) const LINES: Shader = drawing!("lines");
 
 /// All of them.
 pub const SHADERS: &[Shader] =
-    &[BASIS_INDEXED, BASIS_UNPACKED, BASIS_PACKED, TENSOR, DIRECT, BERNSTEIN, FIND_SPANS];
+    &[BASIS_INDEXED, BASIS_UNPACKED, BASIS_PACKED, TENSOR, DIRECT, BERNSTEIN, FIND_SPANS, FACES, LINES];
 
 impl Shader {
     /// The whole source in the precision `R`.

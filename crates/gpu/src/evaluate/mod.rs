@@ -4,6 +4,8 @@ mod on_device;
 mod run;
 
 pub use on_device::OnDevice;
+pub(crate) use on_device::storage;
+pub(crate) use run::read_back;
 pub use run::{Evaluated, Evaluation, Evaluator};
 
 use crate::kernels::{

@@ -1,0 +1,80 @@
+//! Pictures of models.
+
+use crate::{Job, JobError, JobOptions, OnProgress, Report, run, whole_file};
+use chordal_gpu::{DeviceChoice, Gpu, GpuError, Legend, RenderOptions, Renderer, mesh_scenery};
+use chordal_tessellate::Cancel;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A picture to be taken of one file.
+#[derive(Clone)]
+pub struct RenderJob {
+    pub input: PathBuf,
+    /// The PNG file.
+    pub output: PathBuf,
+    /// How the model is meshed.
+    pub mesh: JobOptions,
+    pub picture: RenderOptions,
+    pub device: DeviceChoice,
+    pub cancel: Cancel,
+    pub on_progress: Option<OnProgress>,
+}
+
+impl fmt::Debug for RenderJob {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RenderJob")
+            .field("input", &self.input)
+            .field("output", &self.output)
+            .field("picture", &self.picture)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What was drawn.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The adapter that drew it.
+    pub adapter: String,
+    /// What the colours mean, of measured styles.
+    pub legend: Option<Legend>,
+    /// How the model was meshed.
+    pub report: Report,
+}
+
+/// Why there is no picture; each message is one sentence.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    #[error(transparent)]
+    Job(#[from] JobError),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error("cannot write {}: {source}", path.display())]
+    Write { path: PathBuf, source: std::io::Error },
+}
+
+/// Meshes a file and draws it.
+///
+/// # Errors
+/// Where there is no device, where nothing could be meshed, or where the picture cannot be written.
+pub fn render(job: &RenderJob) -> Result<Rendered, RenderError> {
+    // The device first: without one all else would be in vain.
+    let gpu = Gpu::open(job.device)?;
+    let meshing = Job {
+        input: job.input.clone(),
+        output: None,
+        options: job.mesh.clone(),
+        cancel: job.cancel.clone(),
+        on_progress: job.on_progress.clone(),
+    };
+    let outcome = run(&meshing)?;
+    let (scenery, legend) = mesh_scenery(&outcome.scene, &outcome.model, job.picture.style);
+    let picture = Renderer::new(&gpu)?.render(&gpu, &scenery, &job.picture)?;
+    write(&job.output, &picture.to_png()?)?;
+    Ok(Rendered { adapter: gpu.name().to_owned(), legend, report: outcome.report })
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
+    whole_file::write_whole(path, bytes)
+        .map_err(|source| RenderError::Write { path: path.to_owned(), source })
+}

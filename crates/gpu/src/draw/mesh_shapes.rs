@@ -1,0 +1,220 @@
+//! From a meshed scene to what is drawn.
+
+use super::measures::{distance, diverging, mean_curvature, sequential};
+use super::{Placed, Scenery, Shape, Style, Vertex, camera, srgb};
+use chordal_brep::{FaceGeometry, Model, Part};
+use chordal_mesh::{FaceMesh, Rgba, Scene, ScenePart};
+use chordal_nurbs::Surface;
+use glam::{DVec2, DVec3};
+
+/// What the colours of a measured style mean, millimetres (error) or 1 / millimetres (curvature).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Legend {
+    pub low: f64,
+    pub high: f64,
+}
+
+/// The colour of faces that have none, sRGB.
+pub(crate) const DEFAULT_COLOR: [u8; 4] = [182, 190, 200, 255];
+/// The colour of faces under the lines of a wireframe.
+const PALE: [u8; 4] = [222, 226, 232, 255];
+/// A facet is painted with its error at the corners of so many rows of smaller ones.
+const ERROR_ROWS: usize = 4;
+
+/// Shapes for a style. `model` is what the scene was made of; measured styles need it.
+pub fn mesh_scenery(scene: &Scene, model: &Model, style: Style) -> (Scenery, Option<Legend>) {
+    let mut placements = scene.placements();
+    placements.sort_by_key(|p| p.part);
+    let placed: Vec<Placed> = placements
+        .iter()
+        .map(|p| Placed { shape: p.part, world: p.world, color: p.color.filter(|_| style == Style::Shaded) })
+        .collect();
+    // Of every part the length of its unit, as first placed.
+    let unit = |part: usize| {
+        let world = placed.iter().find(|p| p.shape == part).map(|p| p.world);
+        world.map_or(1.0, |w| w.matrix3.determinant().abs().cbrt())
+    };
+    let mut painted: Vec<(Shape, Vec<f64>)> = scene
+        .parts
+        .iter()
+        .zip(&model.parts)
+        .enumerate()
+        .map(|(index, (part, exact))| shape_of(part, exact, style, unit(index)))
+        .collect();
+    let legend = paint(&mut painted, style);
+    let shapes = painted.into_iter().map(|(shape, _)| shape).collect();
+    (Scenery { shapes, placed }, legend)
+}
+
+/// The shape of a part and, of measured styles, the value at each vertex.
+fn shape_of(part: &ScenePart, exact: &Part, style: Style, unit: f64) -> (Shape, Vec<f64>) {
+    let own = part.mesh.positions.iter().copied();
+    let (low, high) =
+        camera::bounds(own.chain(part.pass_through.iter().flat_map(|t| t.points.iter().copied())));
+    let mut shape = Shape { middle: 0.5 * (low + high), ..Shape::default() };
+    let mut values = Vec::new();
+    for (face, mesh) in part.mesh.faces.iter().enumerate() {
+        let surface = match exact.faces.get(face).map(|f| &f.geometry) {
+            Some(FaceGeometry::Surface(surface)) => Some(surface.as_ref()),
+            _ => None,
+        };
+        let color = face_color(part.face_colors.get(face).copied().flatten(), style);
+        match (style, surface) {
+            (Style::Error, Some(surface)) => push_errors(&mut shape, &mut values, part, mesh, surface, unit),
+            _ => push_face(&mut shape, &mut values, part, mesh, color, surface.map(|s| (s, style, unit))),
+        }
+        if style == Style::Wireframe {
+            push_triangle_edges(&mut shape, part, mesh);
+        }
+    }
+    if style != Style::Wireframe {
+        for line in &part.mesh.edges {
+            let ends = line.windows(2).map(|w| [w[0], w[1]].map(|i| part.mesh.positions[i as usize]));
+            shape.segments.extend(ends.map(|e| e.map(|p| local(p, shape.middle))));
+        }
+    }
+    push_triangles_of_the_file(&mut shape, &mut values, part, style);
+    (shape, values)
+}
+
+fn local(p: DVec3, middle: DVec3) -> [f32; 3] {
+    (p - middle).as_vec3().to_array()
+}
+
+fn face_color(color: Option<Rgba>, style: Style) -> [u8; 4] {
+    match (style, color) {
+        (Style::Wireframe, _) => PALE,
+        (_, Some(c)) => srgb_bytes(c),
+        _ => DEFAULT_COLOR,
+    }
+}
+
+/// Linear colour as sRGB bytes, opaque.
+pub(crate) fn srgb_bytes(c: Rgba) -> [u8; 4] {
+    let byte = |x: f32| (srgb(f64::from(x).clamp(0.0, 1.0)) * 255.0).round() as u8;
+    [byte(c[0]), byte(c[1]), byte(c[2]), 255]
+}
+
+fn push_face(
+    shape: &mut Shape,
+    values: &mut Vec<f64>,
+    part: &ScenePart,
+    mesh: &FaceMesh,
+    color: [u8; 4],
+    exact: Option<(&Surface, Style, f64)>,
+) {
+    let first = shape.vertices.len() as u32;
+    for corner in &mesh.corners {
+        shape.vertices.push(Vertex {
+            position: local(part.mesh.positions[corner.position as usize], shape.middle),
+            normal: corner.normal.as_vec3().to_array(),
+            color,
+        });
+        values.push(match exact {
+            Some((surface, Style::Curvature, unit)) => {
+                mean_curvature(surface, corner.uv, corner.normal).map_or(f64::NAN, |h| h / unit)
+            }
+            _ => 0.0,
+        });
+    }
+    shape.triangles.extend(mesh.triangles.iter().map(|t| t.map(|c| first + c)));
+}
+
+/// Every triangle as a grid of smaller ones, with the distance from the surface at each of their corners.
+fn push_errors(
+    shape: &mut Shape,
+    values: &mut Vec<f64>,
+    part: &ScenePart,
+    mesh: &FaceMesh,
+    surface: &Surface,
+    unit: f64,
+) {
+    for t in &mesh.triangles {
+        let corners = t.map(|c| &mesh.corners[c as usize]);
+        let positions = corners.map(|c| part.mesh.positions[c.position as usize]);
+        let first = shape.vertices.len() as u32;
+        for i in 0..=ERROR_ROWS {
+            for j in 0..=ERROR_ROWS - i {
+                let b = [i, j, ERROR_ROWS - i - j].map(|x| x as f64 / ERROR_ROWS as f64);
+                let mix = |x: [DVec3; 3]| x[0] * b[0] + x[1] * b[1] + x[2] * b[2];
+                let uv: DVec2 = (0..3).map(|k| corners[k].uv * b[k]).sum();
+                let (p, n) = (mix(positions), mix(corners.map(|c| c.normal)));
+                shape.vertices.push(Vertex {
+                    position: local(p, shape.middle),
+                    normal: n.as_vec3().to_array(),
+                    color: DEFAULT_COLOR,
+                });
+                values.push(distance(surface, uv, p) * unit);
+            }
+        }
+        // Row i starts after the rows before it, which have ERROR_ROWS + 1 corners and one less each time.
+        let at = |i: usize, j: usize| first + (i * (2 * ERROR_ROWS + 3 - i) / 2 + j) as u32;
+        for i in 0..ERROR_ROWS {
+            for j in 0..ERROR_ROWS - i {
+                shape.triangles.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                if j + 1 < ERROR_ROWS - i {
+                    shape.triangles.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+    }
+}
+
+/// The edges of all triangles, those of two triangles once.
+fn push_triangle_edges(shape: &mut Shape, part: &ScenePart, mesh: &FaceMesh) {
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    for t in &mesh.triangles {
+        let at = t.map(|c| mesh.corners[c as usize].position);
+        edges.extend([[at[0], at[1]], [at[1], at[2]], [at[2], at[0]]].map(|[a, b]| [a.min(b), a.max(b)]));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    let middle = shape.middle;
+    shape.segments.extend(edges.iter().map(|e| e.map(|i| local(part.mesh.positions[i as usize], middle))));
+}
+
+/// Triangles that came with the file, with its normals or flat.
+fn push_triangles_of_the_file(shape: &mut Shape, values: &mut Vec<f64>, part: &ScenePart, style: Style) {
+    for item in &part.pass_through {
+        let color = face_color(item.color, style);
+        for t in &item.triangles {
+            let corners = t.map(|i| item.points[i as usize]);
+            let flat = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+            let first = shape.vertices.len() as u32;
+            for (corner, &index) in corners.iter().zip(t) {
+                let normal = item.normals.get(index as usize).copied().unwrap_or(flat);
+                shape.vertices.push(Vertex {
+                    position: local(*corner, shape.middle),
+                    normal: normal.as_vec3().to_array(),
+                    color,
+                });
+                values.push(0.0);
+            }
+            shape.triangles.push([first, first + 1, first + 2]);
+        }
+    }
+}
+
+/// Turns values into colours, over a range common to all shapes.
+fn paint(painted: &mut [(Shape, Vec<f64>)], style: Style) -> Option<Legend> {
+    let sizes = || painted.iter().flat_map(|(_, values)| values).filter(|v| v.is_finite()).map(|v| v.abs());
+    let legend = match style {
+        Style::Error => Legend { low: 0.0, high: sizes().fold(0.0, f64::max) },
+        Style::Curvature => {
+            // Nine tenths of the vertices of bent faces set the range: few sharp fillets must not make the rest look flat.
+            let mut bent: Vec<f64> = sizes().filter(|v| *v > 0.0).collect();
+            bent.sort_unstable_by(f64::total_cmp);
+            let high = bent.get(bent.len() * 9 / 10).copied().unwrap_or(1.0);
+            Legend { low: -high, high }
+        }
+        Style::Shaded | Style::Edges | Style::Wireframe => return None,
+    };
+    let high = if legend.high > 0.0 { legend.high } else { 1.0 };
+    for (shape, values) in painted {
+        for (vertex, value) in shape.vertices.iter_mut().zip(values) {
+            let x = if value.is_finite() { *value / high } else { 0.0 };
+            vertex.color = if style == Style::Error { sequential(x) } else { diverging(x.clamp(-1.0, 1.0)) };
+        }
+    }
+    Some(legend)
+}

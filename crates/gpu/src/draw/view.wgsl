@@ -1,0 +1,51 @@
+// What all drawing shaders share: the view, the placements, the light.
+
+struct View {
+    projection: mat4x4<f32>,
+    viewport: vec2<f32>,      // pixels
+    line_width: f32,          // pixels
+    eye: f32,                 // distance of the eye from the origin of the view, 0: infinitely far
+    line_color: vec4<f32>,    // linear; opacity 0: the face's own
+    fill: vec4<f32>,          // linear; opacity 1: in place of every colour, without light
+    section: vec4<f32>,       // of view space: what lies where dot(normal, p) > offset is cut away; 0: nothing
+}
+
+// One placement of a part: part to view, and the colour in place of its own where opacity is not 0.
+struct Placement {
+    view: mat4x4<f32>,
+    normal: mat3x3<f32>,
+    color: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var<storage, read> placements: array<Placement>;
+
+fn linear_of(srgb: vec3<f32>) -> vec3<f32> {
+    let low = srgb / 12.92;
+    let high = pow((srgb + 0.055) / 1.055, vec3<f32>(2.4));
+    return select(high, low, srgb <= vec3<f32>(0.04045));
+}
+
+fn towards_eye(p: vec3<f32>) -> vec3<f32> {
+    if view.eye > 0.0 {
+        return normalize(vec3<f32>(0.0, 0.0, view.eye) - p);
+    }
+    return vec3<f32>(0.0, 0.0, 1.0);
+}
+
+fn is_cut(p: vec3<f32>) -> bool {
+    return dot(view.section.xyz, p) > view.section.w && dot(view.section.xyz, view.section.xyz) > 0.0;
+}
+
+// A key light over the left shoulder, a weak one from below right, sky and ground; both sides of a face are lit.
+fn lit(color: vec3<f32>, normal: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
+    let e = towards_eye(p);
+    let side = select(-1.0, 1.0, dot(normal, e) >= 0.0);
+    let n = normal * side;
+    let key = normalize(vec3<f32>(-0.45, 0.65, 0.75));
+    let fill = normalize(vec3<f32>(0.7, -0.25, 0.45));
+    let sky = mix(0.20, 0.36, 0.5 + 0.5 * n.y);
+    let diffuse = 0.62 * max(dot(n, key), 0.0) + 0.16 * max(dot(n, fill), 0.0);
+    let shine = 0.10 * pow(max(dot(n, normalize(key + e)), 0.0), 40.0);
+    return color * (sky + diffuse) + vec3<f32>(shine);
+}

@@ -1,0 +1,134 @@
+//! Pictures of corpus models against those kept in `tests/pictures`: they may differ by a pixel's place and by rounding.
+//!
+//! `CHORDAL_UPDATE_PICTURES=1` writes them anew; look at them before they are kept.
+
+mod common;
+
+use chordal::gpu::{
+    Background, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style, View, mesh_scenery,
+};
+use chordal::nurbs::DVec3;
+use chordal::{Job, JobOptions, Outcome, Tolerance};
+use common::gpu;
+use std::path::{Path, PathBuf};
+
+/// Largest difference of a channel that is none, and the share of pixels that may differ by more.
+const THRESHOLD: u8 = 24;
+const SHARE: f64 = 0.004;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn meshed(model: &str, percent: f64) -> Outcome {
+    let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent));
+    chordal::run(&Job::new(root().join("corpus").join(model)).with_options(options))
+        .expect("the corpus is meshed")
+}
+
+fn drawn(outcome: &Outcome, options: &RenderOptions) -> Picture {
+    let (scenery, _) = mesh_scenery(&outcome.scene, &outcome.model, options.style);
+    Renderer::new(gpu()).expect("shaders compile").render(gpu(), &scenery, options).expect("a picture")
+}
+
+fn small() -> RenderOptions {
+    RenderOptions::default().with_size(360, 270)
+}
+
+fn write(path: &Path, picture: &Picture) {
+    std::fs::write(path, picture.to_png().expect("it has pixels")).expect("the folder is there");
+}
+
+fn hold_against(name: &str, picture: &Picture) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures").join(format!("{name}.png"));
+    if std::env::var_os("CHORDAL_UPDATE_PICTURES").is_some() {
+        write(&path, picture);
+        return;
+    }
+    let kept = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let share = Picture::from_png(&kept).expect("a picture is kept").difference(picture, THRESHOLD);
+    if share > SHARE {
+        let seen = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
+        write(&seen, picture);
+        panic!("{name}: {:.2} % of the pixels differ; see {}", 100.0 * share, seen.display());
+    }
+}
+
+#[test]
+fn corpus_models_look_as_they_did() {
+    let section = Some(SectionPlane { normal: DVec3::Y, offset: 0.0 });
+    let cases = [
+        ("bracket.step", 0.05, "bracket", small()),
+        ("bracket.step", 0.05, "bracket_section", small().with_section(section)),
+        (
+            "bracket.step",
+            0.05,
+            "bracket_edges",
+            small().with_style(Style::Edges).with_background(Background::DARK),
+        ),
+        ("bracket.step", 0.3, "bracket_error", small().with_style(Style::Error)),
+        ("bracket.step", 0.3, "bracket_wireframe", small().with_style(Style::Wireframe)),
+        (
+            "gear.step",
+            0.05,
+            "gear_dark",
+            small().with_background(Background::DARK).with_projection(Projection::Perspective),
+        ),
+        ("blade.step", 0.05, "blade_curvature", small().with_style(Style::Curvature)),
+        ("assembly_200.step", 0.1, "assembly", small()),
+        ("far_from_origin.step", 0.05, "far_from_origin", small()),
+    ];
+    for (model, percent, name, options) in cases {
+        hold_against(name, &drawn(&meshed(model, percent), &options));
+    }
+}
+
+/// The model far from the origin is drawn as sharply as the same one near it would be: single precision holds offsets only.
+#[test]
+fn a_close_look_far_from_the_origin_keeps_its_pixels() {
+    let outcome = meshed("far_from_origin.step", 0.05);
+    let near = drawn(&outcome, &small());
+    let mut moved = outcome;
+    for &root in &moved.scene.roots.clone() {
+        moved.scene.nodes[root].transform.translation += DVec3::new(4e7, -3e7, 2e7);
+    }
+    assert!(near.difference(&drawn(&moved, &small()), 8) < 0.002);
+}
+
+/// A mirrored placement is lit like the thing itself seen in a mirror.
+#[test]
+fn mirrored_placements_are_lit_from_the_same_side() {
+    let outcome = meshed("gear.step", 0.1);
+    let top = small().with_view("top".parse::<View>().unwrap());
+    let plain = drawn(&outcome, &top);
+    let mut mirrored = outcome;
+    for &root in &mirrored.scene.roots.clone() {
+        let transform = &mut mirrored.scene.nodes[root].transform;
+        *transform = chordal::nurbs::DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)) * *transform;
+    }
+    // A flat gear mirrored in its own plane shows the same face upwards.
+    assert!(plain.difference(&drawn(&mirrored, &top), 8) < 0.01);
+}
+
+/// A transparent background leaves the borders' colours free of it.
+#[test]
+fn transparent_pictures_have_no_dark_borders() {
+    let outcome = meshed("bracket.step", 0.1);
+    let clear = drawn(&outcome, &small().with_background(Background::Transparent));
+    let light = drawn(&outcome, &small());
+    assert!(clear.pixels.iter().any(|p| p[3] == 0) && clear.pixels.iter().any(|p| p[3] == 255));
+    for (a, b) in clear.pixels.iter().zip(&light.pixels).filter(|(a, _)| a[3] == 255) {
+        assert!(a.iter().zip(b).all(|(x, y)| x.abs_diff(*y) <= 2));
+    }
+}
+
+#[test]
+fn a_picture_beyond_the_device_is_refused() {
+    let outcome = meshed("gear.step", 0.5);
+    let (scenery, _) = mesh_scenery(&outcome.scene, &outcome.model, Style::Shaded);
+    let renderer = Renderer::new(gpu()).unwrap();
+    for (width, height) in [(0, 10), (100_000, 10)] {
+        let refused = renderer.render(gpu(), &scenery, &small().with_size(width, height));
+        assert!(refused.is_err_and(|e| e.to_string().contains("pixels")));
+    }
+}
