@@ -75,6 +75,6 @@ pub fn render(job: &RenderJob) -> Result<Rendered, RenderError> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
-    whole_file::write_whole(path, bytes)
+    whole_file::write_bytes(path, bytes)
         .map_err(|source| RenderError::Write { path: path.to_owned(), source })
 }

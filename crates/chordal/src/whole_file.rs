@@ -7,7 +7,12 @@ use std::path::Path;
 ///
 /// # Errors
 /// Those of the file system.
-pub fn write_whole(path: &Path, data: impl AsRef<[u8]>) -> io::Result<()> {
+pub fn write_whole(path: &Path, data: &str) -> io::Result<()> {
+    write_bytes(path, data.as_bytes())
+}
+
+/// As [`write_whole`], for any bytes.
+pub(crate) fn write_bytes(path: &Path, data: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".chordal-").suffix(".part");
@@ -18,7 +23,7 @@ pub fn write_whole(path: &Path, data: impl AsRef<[u8]>) -> io::Result<()> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(data.as_ref())?;
+    file.write_all(data)?;
     file.persist(path)?;
     Ok(())
 }
