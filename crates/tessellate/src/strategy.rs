@@ -14,6 +14,7 @@ mod borders;
 mod cells;
 mod chords;
 mod constrain;
+mod coving;
 mod cut;
 mod delaunay;
 mod derivatives;
@@ -68,6 +69,8 @@ pub enum Strategy {
     Recursive,
     /// Bézier patches cut into four (Kahlesz, Balázs, Klein 2001, sections 4, 6 and 7).
     Quadtree(Stretch),
+    /// A grid inside, joined to the boundary by triangles between them (survey of the Blender wiki, "Coving").
+    Coving,
     /// Bézier patches as quadrilaterals (Ma, Hewitt 2002).
     Bezier,
     /// Fill points and a Delaunay triangulation (survey of the Blender wiki, "Delaunay Triangulation").
@@ -101,6 +104,7 @@ const KAHLESZ: &str = "Kahlesz, Balázs, Klein 2001, sections 4, 6 and 7";
 const GRID_CUT: &str = "Blender wiki, Uniform Grid Cut";
 const DIRECT: &str = "Blender wiki, Tessellation Terminology: direct tessellation";
 const RECURSIVE: &str = "Blender wiki, Recursive Subdivision / Piecewise Bézier";
+const COVING: &str = "Blender wiki, Tessellation Terminology: coving";
 const MA_HEWITT: &str = "Ma, Hewitt 2002, section 4";
 const DELAUNAY: &str = "Blender wiki, Delaunay Triangulation";
 
@@ -126,6 +130,7 @@ static ENTRIES: &[StrategyEntry] = &[
         "the same with the document's bilinear norm",
         KAHLESZ,
     ),
+    entry(Strategy::Coving, "coving", "a grid inside, triangles between it and the loops", COVING),
     entry(Strategy::Bezier, "bezier", "Bézier patches as quadrilaterals", MA_HEWITT),
     entry(
         Strategy::Delaunay(Fill::Uniform),

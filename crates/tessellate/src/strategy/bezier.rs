@@ -203,14 +203,14 @@ fn patch_of(points: &[DVec2], ring: &[u32], sorted: &[UvBox]) -> Option<UvBox> {
 }
 
 /// The halves of a quadrilateral, on both sides of its shorter diagonal in space.
-fn halves(xyz: &[DVec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+pub(crate) fn halves(xyz: &[DVec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     let length = |a: u32, b: u32| xyz[a as usize].distance_squared(xyz[b as usize]);
     // Where only rounding tells them apart, the first.
     if length(b, d) < length(a, c) * (1.0 - 1e-9) { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
 }
 
 /// Triangles from `apex` to every side of the ring that it is not an end of.
-fn fan(apex: u32, ring: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+pub(crate) fn fan(apex: u32, ring: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     let n = ring.len();
     let side = move |i: usize| [apex, ring[i], ring[(i + 1) % n]];
     (0..n).map(side).filter(|[apex, a, b]| a != apex && b != apex)

@@ -87,10 +87,15 @@ impl Region {
 
     /// True where the face has a point in the box.
     pub fn meets(&self, b: UvBox) -> bool {
+        self.is_crossed(b) || self.contains(b.center())
+    }
+
+    /// True where a chord has a point in the box.
+    pub fn is_crossed(&self, b: UvBox) -> bool {
         self.near(b).into_iter().any(|k| {
             let [p, q] = self.ends(k);
             chord_meets(p, q, b)
-        }) || self.contains(b.center())
+        })
     }
 
     /// The chord nearest to `p` with `p` within `reach` of it, lengths counted in `scale` per direction.

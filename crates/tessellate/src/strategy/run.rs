@@ -4,6 +4,7 @@ use super::Strategy;
 use super::bezier::BezierQuads;
 use super::cells::{Cells, Rule};
 use super::chords::judge_chords;
+use super::coving::Coving;
 use super::cut::cut;
 use super::delaunay::Delaunay;
 use super::grid::{ControlCells, UniformGrid};
@@ -134,6 +135,7 @@ fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<B
         Strategy::ControlCells { per_cell } => (Box::new(ControlCells { per_cell }), Filling::FanOrMonotone),
         Strategy::Recursive => (Box::new(Recursive), Filling::FanOrMonotone),
         Strategy::Quadtree(stretch) => (Box::new(Quadtree(stretch)), Filling::Delaunay),
+        Strategy::Coving => return Ok(Box::new(Coving::new(work, measure)?)),
         Strategy::Bezier => return Ok(Box::new(BezierQuads::new(work, measure)?)),
         Strategy::Delaunay(fill) => return Ok(Box::new(Delaunay::new(work, fill))),
         Strategy::Default => return Err("the default strategy has no method of its own".into()),
