@@ -455,4 +455,7 @@ pub struct BenchArgs {
     /// Repetitions before the clock starts.
     #[arg(long, default_value = "1", value_name = "N")]
     pub warm: usize,
+    /// The tables of Balázs, Guthe, Klein 2004 instead; `tools/paper_tables.py` makes a page of them.
+    #[arg(long)]
+    pub papers: bool,
 }

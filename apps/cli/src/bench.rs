@@ -32,6 +32,9 @@ pub fn run(args: &BenchArgs) -> Exit {
             return Exit::Nothing;
         }
     };
+    if args.papers {
+        return pool.install(|| papers(args, &options));
+    }
     let mut timings = Vec::new();
     for input in &args.inputs {
         match pool.install(|| time(input, &options, args.warm, args.repeat)) {
@@ -41,6 +44,20 @@ pub fn run(args: &BenchArgs) -> Exit {
     }
     print(&(serde_json::to_string_pretty(&timings).expect("timings have string keys only") + "\n"));
     if timings.len() == args.inputs.len() { Exit::Clean } else { Exit::Nothing }
+}
+
+/// The tables of the document, one object per model.
+fn papers(args: &BenchArgs, options: &JobOptions) -> Exit {
+    let cancel = Cancel::default();
+    let mut tables = Vec::new();
+    for input in &args.inputs {
+        match chordal::paper_tables(input, options, &cancel) {
+            Ok(found) => tables.push(found),
+            Err(error) => say(&error.to_string()),
+        }
+    }
+    print(&(serde_json::to_string_pretty(&tables).expect("tables have string keys only") + "\n"));
+    if tables.len() == args.inputs.len() { Exit::Clean } else { Exit::Nothing }
 }
 
 fn time(input: &Path, options: &JobOptions, warm: usize, repeat: usize) -> Result<Timing, JobError> {

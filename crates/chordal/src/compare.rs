@@ -127,7 +127,7 @@ pub fn compare(
 }
 
 /// Parts that are placed, with how often.
-fn placed<'a>(
+pub(crate) fn placed<'a>(
     resolved: &'a Resolved,
     parts: &'a [MeshedPart],
 ) -> impl Iterator<Item = (usize, &'a MeshedPart, usize, f64)> {

@@ -19,6 +19,7 @@ mod cut;
 mod delaunay;
 mod derivatives;
 mod grid;
+mod half_edges;
 mod kd;
 mod leaf_mesh;
 mod loop_tree;

@@ -2,7 +2,9 @@
 //!
 //! Source: Balázs, Guthe, Klein 2004, section 7. A polygon without a reflex corner is cut from its upper left corner in linear time;
 //! others by the plane sweep into monotone pieces (Garey and others 1978). Kahlesz, Balázs, Klein 2001, section 7, keeps
-//! the constrained Delaunay triangulation instead. Whether a polygon is convex costs one turn per corner.
+//! the constrained Delaunay triangulation instead. Whether a polygon is convex costs one turn per corner, and is asked only where a
+//! trimming loop passes. Polygons are found by walking along half-edges ([`super::half_edges`]); where that does not account for
+//! every triangle, or would make a sliver, the constrained Delaunay triangles of the region stay.
 //!
 //! ```text
 //! o──1──o──3──o        from the upper left corner the front (l, r) moves down and right; the next corner is the one of the
@@ -10,10 +12,11 @@
 //! 2  4   …
 //! ```
 
+use super::half_edges::{Polygon, walk};
 use super::trace::Trace;
 use crate::triangulate::{NONE, Triangulation, orient, sweep};
 use chordal_nurbs::{DVec2, UvBox};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// How polygons become triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,50 +34,125 @@ pub(crate) fn retriangulate(
     filling: Filling,
     trace: &mut Trace,
 ) {
-    let polygons = polygons(mesh, fixed);
+    let regions = polygons(mesh, fixed);
     if filling == Filling::Delaunay {
-        trace.add("constrained Delaunay polygons", polygons.len());
+        trace.add("constrained Delaunay polygons", regions.len());
         return;
     }
+    let mut count = Count::default();
+    let walked = walked(mesh, fixed, &regions, &mut count);
+    let on_boundary = on_boundary(mesh);
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
-    let (mut convex, mut monotone, mut kept) = (0, 0, 0);
-    for polygon in &polygons {
-        let Some(loops) = outline(mesh, polygon) else {
-            kept += 1;
-            triangles.extend(polygon.iter().map(|&t| mesh.triangles[t as usize]));
-            continue;
-        };
-        let size = UvBox::from_points(loops.iter().flatten().map(|&v| mesh.points[v as usize])).size();
-        let whole = |new: &[[u32; 3]]| {
-            let sound = |t: &[u32; 3]| is_sound(t.map(|v| mesh.points[v as usize]), size);
-            new.len() == polygon.len() && new.iter().all(sound)
-        };
-        if let [one] = &loops[..]
-            && is_convex(&mesh.points, one, size)
-        {
-            let new = zigzag(&mesh.points, one);
-            if whole(&new) {
-                convex += 1;
-                triangles.extend(new);
-                continue;
-            }
+    for (region, own) in regions.iter().zip(&walked) {
+        let bounds = own.iter().flat_map(|p| &p.nodes).map(|&v| mesh.points[v as usize]);
+        let size = UvBox::from_points(bounds).size();
+        let start = triangles.len();
+        let before = count;
+        for polygon in own {
+            triangles.extend(triangulated(&mesh.points, polygon, &on_boundary, size, &mut count));
         }
-        match monotone_pieces(&mesh.points, &loops).filter(|new| whole(new)) {
-            Some(new) => {
-                monotone += 1;
-                triangles.extend(new);
-            }
-            None => {
-                kept += 1;
-                triangles.extend(polygon.iter().map(|&t| mesh.triangles[t as usize]));
+        let sound = |t: &[u32; 3]| is_sound(t.map(|v| mesh.points[v as usize]), size);
+        if triangles.len() - start != region.len() || !triangles[start..].iter().all(sound) {
+            triangles.truncate(start);
+            triangles.extend(region.iter().map(|&t| mesh.triangles[t as usize]));
+            count = Count { kept: before.kept + 1, ..before };
+        }
+    }
+    trace.add("half-edge polygons", walked.iter().map(Vec::len).sum());
+    trace.add("bridges to holes", count.bridges);
+    trace.add("polygons with a trimming edge", count.marked);
+    trace.add("convex polygons", count.convex);
+    trace.add("monotone polygons", count.monotone);
+    trace.add("polygons kept as constrained Delaunay", count.kept);
+    let points = std::mem::take(&mut mesh.points);
+    *mesh = Triangulation::new(points, triangles);
+}
+
+/// What was done with polygons.
+#[derive(Clone, Copy, Default)]
+struct Count {
+    bridges: usize,
+    marked: usize,
+    convex: usize,
+    monotone: usize,
+    kept: usize,
+}
+
+/// The polygons that the walk along half-edges finds, by the region of triangles that they cover; none for regions where the
+/// boundary is no set of simple loops.
+fn walked(
+    mesh: &Triangulation,
+    fixed: &FxHashSet<(u32, u32)>,
+    regions: &[Vec<u32>],
+    count: &mut Count,
+) -> Vec<Vec<Polygon>> {
+    let mut found = vec![Vec::new(); regions.len()];
+    // Loops that cross leave triangles turned over; edges then cross, and there is no planar graph.
+    let is_plane = (0..mesh.triangles.len() as u32).all(|t| {
+        let [a, b, c] = mesh.corners(t);
+        orient(a, b, c) > 0.0
+    });
+    if !is_plane {
+        return found;
+    }
+    let mut region_of: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+    let (mut trimming, mut borders) = (Vec::new(), Vec::new());
+    for (r, region) in regions.iter().enumerate() {
+        for &t in region {
+            for i in 0..3 {
+                let (a, b) = edge(mesh, t, i);
+                region_of.insert((a, b), r as u32);
+                if mesh.neighbors[t as usize][i] == NONE {
+                    trimming.push([a, b]);
+                } else if a < b && fixed.contains(&(a, b)) {
+                    borders.push([a, b]);
+                }
             }
         }
     }
-    trace.add("convex polygons", convex);
-    trace.add("monotone polygons", monotone);
-    trace.add("polygons kept as constrained Delaunay", kept);
-    let points = std::mem::take(&mut mesh.points);
-    *mesh = Triangulation::new(points, triangles);
+    let walked = walk(&mesh.points, &trimming, &borders);
+    count.bridges = walked.bridges;
+    for polygon in walked.polygons {
+        let n = polygon.nodes.len();
+        let side = |i: usize| (polygon.nodes[i], polygon.nodes[(i + 1) % n]);
+        // Bridges are not among the sides of regions; every polygon has others.
+        if let Some(&r) = (0..n).find_map(|i| region_of.get(&side(i))) {
+            found[r as usize].push(polygon);
+        }
+    }
+    found
+}
+
+/// Vertices of the trimming loops.
+fn on_boundary(mesh: &Triangulation) -> Vec<bool> {
+    let mut found = vec![false; mesh.points.len()];
+    for t in 0..mesh.triangles.len() as u32 {
+        for i in (0..3).filter(|&i| mesh.neighbors[t as usize][i] == NONE) {
+            let (a, b) = edge(mesh, t, i);
+            found[a as usize] = true;
+            found[b as usize] = true;
+        }
+    }
+    found
+}
+
+/// Only polygons that touch a trimming loop need be asked whether they are convex: others are cells with vertices in their sides.
+fn triangulated(
+    points: &[DVec2],
+    polygon: &Polygon,
+    on_boundary: &[bool],
+    size: DVec2,
+    count: &mut Count,
+) -> Vec<[u32; 3]> {
+    let nodes = &polygon.nodes;
+    count.marked += usize::from(polygon.is_marked);
+    let is_cell = !polygon.is_marked && nodes.iter().all(|&v| !on_boundary[v as usize]);
+    if is_cell || is_convex(points, nodes, size) {
+        count.convex += 1;
+        return zigzag(points, nodes);
+    }
+    count.monotone += 1;
+    monotone_pieces(points, std::slice::from_ref(nodes)).unwrap_or_default()
 }
 
 /// Triangles that no fixed edge separates, polygon by polygon.
@@ -215,6 +293,7 @@ fn monotone_pieces(points: &[DVec2], loops: &[Vec<u32>]) -> Option<Vec<[u32; 3]>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn a_cell_with_points_in_its_sides_is_cut_without_slivers() {
@@ -256,5 +335,90 @@ mod tests {
         retriangulate(&mut mesh, &FxHashSet::default(), Filling::FanOrMonotone, &mut trace);
         assert_eq!(trace.count("monotone polygons"), 1);
         assert_eq!(mesh.triangles.len(), 4);
+    }
+
+    /// A star around (x, y); the radius changes from corner to corner.
+    fn star(middle: DVec2, radii: &[f64]) -> Vec<DVec2> {
+        let turn = std::f64::consts::TAU / radii.len() as f64;
+        let at = |(i, r): (usize, &f64)| middle + *r * DVec2::from_angle(turn * i as f64);
+        radii.iter().enumerate().map(at).collect()
+    }
+
+    fn area(points: &[DVec2], triangles: &[[u32; 3]]) -> f64 {
+        let of = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| points[v as usize]);
+            0.5 * (b - a).perp_dot(c - a)
+        };
+        triangles.iter().map(of).sum()
+    }
+
+    proptest! {
+        /// A star with stars cut out: as many triangles as Euler says, all counter-clockwise, the same area as earcut's.
+        #[test]
+        fn walk_and_monotone_pieces_agree_with_earcut(
+            outer in prop::collection::vec(4.0f64..6.0, 5..40),
+            holes in prop::collection::vec(prop::collection::vec(0.2f64..0.9, 3..9), 0..4),
+        ) {
+            let mut points = star(DVec2::ZERO, &outer);
+            let mut loops = vec![(0..points.len() as u32).collect::<Vec<u32>>()];
+            for (i, radii) in holes.iter().enumerate() {
+                let start = points.len() as u32;
+                let middle = [DVec2::new(1.5, 0.3), DVec2::new(-1.4, 0.2), DVec2::new(0.1, 1.6), DVec2::new(0.2, -1.7)][i];
+                points.extend(star(middle, radii).into_iter().rev());
+                loops.push((start..points.len() as u32).collect());
+            }
+            let next = |l: &Vec<u32>, i: usize| [l[i], l[(i + 1) % l.len()]];
+            let trimming: Vec<[u32; 2]> =
+                loops.iter().flat_map(|l| (0..l.len()).map(move |i| next(l, i))).collect();
+            let found = walk(&points, &trimming, &[]);
+            let mut triangles = Vec::new();
+            for polygon in &found.polygons {
+                let own = monotone_pieces(&points, std::slice::from_ref(&polygon.nodes)).expect("simple");
+                prop_assert_eq!(own.len(), polygon.nodes.len() - 2);
+                triangles.extend(own);
+            }
+            prop_assert_eq!(triangles.len(), points.len() + 2 * loops.len() - 4);
+            for t in &triangles {
+                let [a, b, c] = t.map(|v| points[v as usize]);
+                prop_assert!(orient(a, b, c) >= 0.0);
+            }
+            let starts: Vec<u32> = loops[1..].iter().map(|l| l[0]).collect();
+            let mut ears: Vec<u32> = Vec::new();
+            earcut::Earcut::new().earcut(points.iter().map(|p| [p.x, p.y]), &starts, &mut ears);
+            let ears: Vec<[u32; 3]> = ears.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+            let (ours, theirs) = (area(&points, &triangles), area(&points, &ears).abs());
+            prop_assert!((ours - theirs).abs() < 1e-9 * ours, "{ours} {theirs}");
+        }
+
+        /// Convex polygons, vertices in their sides included, from the upper left corner on: linear, complete, and convex is what
+        /// the test says.
+        #[test]
+        fn convex_polygons_are_cut_completely(
+            angles in prop::collection::vec(0.0..std::f64::consts::TAU, 3..20), stretch in 0.01f64..100.0, dent: bool,
+        ) {
+            let mut angles = angles;
+            angles.sort_unstable_by(f64::total_cmp);
+            angles.dedup_by(|a, b| *a - *b < 0.05);
+            // The middle must be inside, so that a dent is one.
+            let around = angles.windows(2).map(|w| w[1] - w[0]).fold(angles[0] + 6.29 - angles[angles.len() - 1], f64::max);
+            prop_assume!(angles.len() >= 4 && around < 3.0);
+            let mut points: Vec<DVec2> = angles.iter().map(|&a| DVec2::from_angle(a) * DVec2::new(stretch, 1.0)).collect();
+            if dent {
+                points[1] *= 0.01;
+            }
+            let polygon: Vec<u32> = (0..points.len() as u32).collect();
+            let size = UvBox::from_points(points.iter().copied()).size();
+            let brute = (0..points.len()).all(|i| {
+                let n = points.len();
+                (0..n).all(|k| orient(points[i], points[(i + 1) % n], points[k]) >= 0.0)
+            });
+            prop_assert_eq!(is_convex(&points, &polygon, size), brute);
+            if brute {
+                let triangles = zigzag(&points, &polygon);
+                prop_assert_eq!(triangles.len(), points.len() - 2);
+                let whole: f64 = (0..points.len()).map(|i| 0.5 * points[i].perp_dot(points[(i + 1) % points.len()])).sum();
+                prop_assert!((area(&points, &triangles) - whole).abs() < 1e-9 * whole);
+            }
+        }
     }
 }

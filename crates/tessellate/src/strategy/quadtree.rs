@@ -25,9 +25,12 @@ pub enum Stretch {
     SingularValue,
 }
 
-/// The quadtree, with its share of the tolerance.
+/// The quadtree, with its share of the tolerance: ε in κ, or all of it where curves are not approximated in the plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Quadtree(pub Stretch);
+pub(crate) struct Quadtree {
+    pub stretch: Stretch,
+    pub share: f64,
+}
 
 /// ε in κ.
 pub(crate) const SURFACE_SHARE: f64 = 1.0 / 3.0;
@@ -42,11 +45,7 @@ impl Rule for Quadtree {
     }
 
     fn cuts(&self, piece: &NurbsSurface, tolerance: f64, measure: Measure) -> Vec<Split> {
-        if Flatness::new(piece, measure).error <= SURFACE_SHARE * tolerance {
-            Vec::new()
-        } else {
-            halves(piece)
-        }
+        if Flatness::new(piece, measure).error <= self.share * tolerance { Vec::new() } else { halves(piece) }
     }
 
     fn forced(&self, piece: &NurbsSurface, _: Measure) -> Vec<Split> {
@@ -55,7 +54,7 @@ impl Rule for Quadtree {
 
     /// κ − 2ε over ‖bl‖.
     fn chord_share(&self, piece: &NurbsSurface, tolerance: f64) -> Option<f64> {
-        let stretch = match self.0 {
+        let stretch = match self.stretch {
             Stretch::Edges => norm_by_edges(piece),
             Stretch::SingularValue => norm(piece),
         };

@@ -12,10 +12,11 @@ use super::kd::{Binary, Kd};
 use super::node::Measure;
 use super::poles::open_out;
 use super::polygons::{Filling, retriangulate};
-use super::quadtree::Quadtree;
+use super::quadtree::{Quadtree, SURFACE_SHARE};
 use super::recursive::Recursive;
 use super::region::Region;
 use crate::chart::Segment;
+use crate::edge_method::EdgeMethod;
 use crate::face::FaceWork;
 use crate::options::{Bound, Options};
 use crate::prove::{Fault, Prover, Verdict};
@@ -64,6 +65,8 @@ struct ByCells {
     filling: Filling,
     tolerance: f64,
     measure: Measure,
+    /// The rule may find chords of the edges too coarse.
+    judges_chords: bool,
     /// How often all cells were halved at once.
     halvings: usize,
 }
@@ -110,6 +113,9 @@ impl Method for ByCells {
     }
 
     fn coarse_chords(&self, work: &mut FaceWork<'_, '_>) -> Vec<(u32, u32)> {
+        if !self.judges_chords {
+            return Vec::new();
+        }
         let clock = Instant::now();
         let judged = judge_chords(work, &self.cells, &*self.rule);
         work.phases.traversal += clock.elapsed().as_secs_f64();
@@ -126,15 +132,19 @@ impl Method for ByCells {
     }
 }
 
-fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<Box<dyn Method>, String> {
-    let measure = if bound == Bound::Proven { Measure::Conservative } else { Measure::Estimated };
+fn method(work: &FaceWork<'_, '_>, options: &Options) -> Result<Box<dyn Method>, String> {
+    let strategy = options.strategy;
+    // Curves that are approximated in space are not judged in the plane, and leave the surface all of the tolerance.
+    let judges_chords = !matches!(options.edge_method, EdgeMethod::Bezier3d { .. });
+    let share = if judges_chords { SURFACE_SHARE } else { 1.0 };
+    let measure = if options.bound == Bound::Proven { Measure::Conservative } else { Measure::Estimated };
     let (rule, filling): (Box<dyn Rule>, Filling) = match strategy {
         Strategy::Kd(cut) => (Box::new(Kd(cut)), Filling::FanOrMonotone),
         Strategy::Binary(cut) => (Box::new(Binary(cut)), Filling::FanOrMonotone),
         Strategy::UniformGrid => (Box::new(UniformGrid), Filling::FanOrMonotone),
         Strategy::ControlCells { per_cell } => (Box::new(ControlCells { per_cell }), Filling::FanOrMonotone),
         Strategy::Recursive => (Box::new(Recursive), Filling::FanOrMonotone),
-        Strategy::Quadtree(stretch) => (Box::new(Quadtree(stretch)), Filling::Delaunay),
+        Strategy::Quadtree(stretch) => (Box::new(Quadtree { stretch, share }), Filling::Delaunay),
         Strategy::Coving => return Ok(Box::new(Coving::new(work, measure)?)),
         Strategy::Bezier => return Ok(Box::new(BezierQuads::new(work, measure)?)),
         Strategy::Delaunay(fill) => return Ok(Box::new(Delaunay::new(work, fill))),
@@ -144,7 +154,7 @@ fn method(work: &FaceWork<'_, '_>, strategy: Strategy, bound: Bound) -> Result<B
     let tolerance = work.limits.tolerance;
     let mut cells = Cells::new(work.context.surface, region.uv_box, tolerance)?;
     cells.begin(&*rule, &region, tolerance);
-    Ok(Box::new(ByCells { region, cells, rule, filling, tolerance, measure, halvings: 0 }))
+    Ok(Box::new(ByCells { region, cells, rule, filling, tolerance, measure, judges_chords, halvings: 0 }))
 }
 
 /// Fills a face whose loops are triangulated.
@@ -157,7 +167,7 @@ pub(crate) fn fill(
     options: &Options,
 ) -> Result<Verdict, String> {
     let clock = Instant::now();
-    let mut method = method(work, options.strategy, options.bound)?;
+    let mut method = method(work, options)?;
     work.phases.conversion += clock.elapsed().as_secs_f64();
     let verdict = refine(work, prover, &mut *method, options.bound);
     if options.record_cells {

@@ -1,0 +1,194 @@
+//! The tables of Balázs, Guthe, Klein 2004, measured on a model: trimming edges per method (Table 2), triangles and time per
+//! surface method with and without coherence (Tables 3 and 4).
+
+use crate::compare::placed;
+use crate::job::{MeshedPart, mesh_parts, read_model};
+use crate::resolve::{Resolved, resolve};
+use crate::{JobError, JobOptions};
+use chordal_brep::{FaceGeometry, Model};
+use chordal_mesh::FaceMesh;
+use chordal_nurbs::{CoherentEvaluator, DVec2, DVec3, NurbsSurface, Surface, UvBox};
+use chordal_tessellate::{Bound, Cancel, Cut, EdgeMethod, Strategy, Stretch, loop_rows};
+use serde::Serialize;
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Instant;
+
+/// What a model gives in the tables.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PaperTables {
+    pub model: String,
+    pub faces: usize,
+    /// In millimetres.
+    pub tolerance: f64,
+    pub loops: Vec<LoopEntry>,
+    pub surfaces: Vec<SurfaceEntry>,
+}
+
+/// One way to make polylines of all trimming loops, each face its own.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LoopEntry {
+    pub method: String,
+    /// Seconds from the model to Bézier curves.
+    pub conversion: f64,
+    /// Seconds from Bézier curves to polylines.
+    pub approximation: f64,
+    pub edges: usize,
+    /// Vertices set where loops cross in the plane of parameters.
+    pub crossings: usize,
+    /// Uses of edges without a curve in the plane of parameters.
+    pub left_out: usize,
+}
+
+/// One way to make a mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SurfaceEntry {
+    pub strategy: String,
+    pub edge_method: String,
+    pub bound: String,
+    pub triangles: usize,
+    /// Chords of the model's edges.
+    pub edges: usize,
+    /// Shortest wall time of some runs, from the exact model to the mesh.
+    pub seconds: f64,
+    /// Vertices of all faces, those at edges once a face.
+    pub vertices: usize,
+    /// Seconds to evaluate them on the NURBS forms of the faces, each by itself and with reuse; sorting included.
+    pub evaluation: f64,
+    pub coherent: f64,
+    /// Cells of the subdivisions at the end.
+    pub cells: usize,
+    pub failed_faces: usize,
+}
+
+/// Runs per mesh and per evaluation; the shortest counts.
+const RUNS: usize = 3;
+
+/// Measures all tables on the model in `input`.
+///
+/// # Errors
+/// Where the model cannot be read or the options make no sense for it.
+pub fn paper_tables(input: &Path, options: &JobOptions, cancel: &Cancel) -> Result<PaperTables, JobError> {
+    let model = read_model(input)?;
+    let resolved = resolve(&model, options, None, input, cancel)?;
+    let mut tables = PaperTables {
+        model: input.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        faces: model.placed_faces(),
+        tolerance: resolved.tolerance,
+        loops: loops(&model, &resolved),
+        surfaces: Vec::new(),
+    };
+    for (strategy, edge_method, bound) in surface_methods() {
+        let options = options.clone().with_strategy(strategy).with_edge_method(edge_method).with_bound(bound);
+        tables.surfaces.push(surface(&model, &options, input, cancel)?);
+    }
+    Ok(tables)
+}
+
+fn loops(model: &Model, resolved: &Resolved) -> Vec<LoopEntry> {
+    let methods: Vec<EdgeMethod> = EdgeMethod::entries().iter().map(|e| e.method).collect();
+    let mut entries: Vec<LoopEntry> = Vec::new();
+    for (part, (part_use, options)) in model.parts.iter().zip(resolved.uses.iter().zip(&resolved.parts)) {
+        if part_use.instances == 0 {
+            continue;
+        }
+        for row in loop_rows(part, options.tolerance, &methods) {
+            let name = row.method.name();
+            if !entries.iter().any(|e| e.method == name) {
+                entries.push(LoopEntry { method: name.into(), ..LoopEntry::default() });
+            }
+            let entry = entries.iter_mut().find(|e| e.method == name).expect("just pushed");
+            entry.conversion += row.conversion;
+            entry.approximation += row.approximation;
+            entry.edges += part_use.instances * row.edges;
+            entry.crossings += part_use.instances * row.crossings;
+            entry.left_out += part_use.instances * row.left_out;
+        }
+    }
+    entries
+}
+
+/// The methods of Tables 3 and 4, and ours.
+fn surface_methods() -> Vec<(Strategy, EdgeMethod, Bound)> {
+    let lifted = EdgeMethod::from_name("bezier3d").unwrap_or_default();
+    let quadtree = Strategy::Quadtree(Stretch::SingularValue);
+    let mut methods = vec![(quadtree, EdgeMethod::Bezier2d, Bound::Proven)];
+    for strategy in [
+        quadtree,
+        Strategy::Binary(Cut::Midpoint),
+        Strategy::Kd(Cut::Midpoint),
+        Strategy::Kd(Cut::WorstPoint),
+    ] {
+        methods.extend([Bound::Proven, Bound::Estimated].map(|bound| (strategy, lifted, bound)));
+    }
+    methods.extend([Bound::Proven, Bound::Estimated].map(|b| (Strategy::Default, EdgeMethod::Default, b)));
+    methods
+}
+
+fn surface(
+    model: &Model,
+    options: &JobOptions,
+    input: &Path,
+    cancel: &Cancel,
+) -> Result<SurfaceEntry, JobError> {
+    let resolved = resolve(model, options, None, input, cancel)?;
+    let mut entry = SurfaceEntry {
+        strategy: options.strategy.name().into(),
+        edge_method: options.edge_method.name().into(),
+        bound: crate::names::bound_name(options.bound).into(),
+        seconds: f64::INFINITY,
+        ..SurfaceEntry::default()
+    };
+    let mut parts = Vec::new();
+    for _ in 0..RUNS {
+        let clock = Instant::now();
+        parts = mesh_parts(model, &resolved, cancel, &|_| ());
+        entry.seconds = entry.seconds.min(clock.elapsed().as_secs_f64());
+    }
+    for (i, part, instances, _) in placed(&resolved, &parts) {
+        book(&model.parts[i], part, instances, &mut entry);
+    }
+    Ok(entry)
+}
+
+fn book(part: &chordal_brep::Part, meshed: &MeshedPart, instances: usize, entry: &mut SurfaceEntry) {
+    entry.triangles += instances * meshed.mesh.triangle_count();
+    entry.edges += instances * meshed.mesh.edges.iter().map(|e| e.len().saturating_sub(1)).sum::<usize>();
+    for face in &meshed.report.faces {
+        entry.failed_faces += instances * usize::from(face.failed.is_some());
+        let of_cells =
+            face.trace.parts().filter(|(name, _)| name.ends_with("leaves") || name.ends_with("cells"));
+        entry.cells += instances * of_cells.map(|(_, count)| count).sum::<usize>();
+    }
+    for face in &meshed.mesh.faces {
+        let Some(FaceGeometry::Surface(surface)) = part.faces.get(face.face as usize).map(|f| &f.geometry)
+        else {
+            continue;
+        };
+        let Some((form, uv)) = on_form(surface, face) else { continue };
+        entry.vertices += uv.len();
+        entry.evaluation += shortest(|| uv.iter().map(|&p| form.point(p)).sum());
+        entry.coherent += shortest(|| CoherentEvaluator::new(&form).points(&uv).into_iter().sum());
+    }
+}
+
+/// The corners of a face in the parameters of its NURBS form; `None` where it has no exact one.
+fn on_form(surface: &Surface, face: &FaceMesh) -> Option<(NurbsSurface, Vec<DVec2>)> {
+    let uv: Vec<DVec2> = face.corners.iter().map(|c| c.uv).collect();
+    if let Surface::Nurbs(spline) = surface {
+        return Some((spline.clone(), uv));
+    }
+    let within = UvBox::from_points(uv.iter().copied());
+    let form = surface.to_nurbs(within).ok()?;
+    let map = surface.nurbs_parameters(within).ok()?;
+    Some((form, uv.into_iter().map(|p| map.nurbs_from_native(p)).collect()))
+}
+
+fn shortest(evaluate: impl Fn() -> DVec3) -> f64 {
+    let run = || {
+        let clock = Instant::now();
+        black_box(evaluate());
+        clock.elapsed().as_secs_f64()
+    };
+    (0..RUNS).map(|_| run()).fold(f64::INFINITY, f64::min)
+}
