@@ -218,3 +218,27 @@ fn tightness_of_the_criteria() {
         assert!(decades > 0.0 || n > 3 || line.0 < 1.8, "{}", line.0);
     }
 }
+
+/// Degree reduction as printed compares the recursion from the left with the one from the right: both lose all digits towards
+/// their far ends. Each up to the middle, they agree.
+#[test]
+fn reduction_as_printed_explodes() {
+    let mut random = Random(77);
+    let mut curve = random_curve(&mut random, 3, false, 0.0);
+    while curve.degree() < 100 {
+        curve = curve.elevated();
+    }
+    let (p, n) = (&curve.points, 100usize);
+    let mut forward = vec![p[0]; n];
+    for i in 1..n {
+        forward[i] = (p[i] * n as f64 - forward[i - 1] * i as f64) / (n - i) as f64;
+    }
+    let mut backward = vec![p[n]; n];
+    for i in (1..n).rev() {
+        backward[i - 1] = (p[i] * n as f64 - backward[i] * (n - i) as f64) / i as f64;
+    }
+    let apart = forward.iter().zip(&backward).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    assert!(apart > 1e10, "{apart:e}");
+    let (lower, error) = curve.reduced().unwrap();
+    assert!(lower.degree() == 99 && error < 1e-12, "{error:e}");
+}

@@ -29,6 +29,8 @@ mod polygons;
 mod projected;
 mod recursive;
 mod region;
+#[cfg(test)]
+mod restored;
 mod run;
 mod scanlines;
 #[cfg(test)]
