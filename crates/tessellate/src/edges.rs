@@ -437,7 +437,9 @@ impl EdgeUse<'_, '_> {
         // The direction in parameter space that maps to the curve's tangent, by least squares.
         let d = least_squares(&s, jet.d1);
         *track = Some(Track { t, place, rate: d });
-        let Some(sizing) = Sizing::new(&s, limits) else { return 0.0 };
+        // An edge that lies off the surface does not say which wrinkle of it is meant.
+        let off = s.p.distance(jet.p);
+        let Some(sizing) = Sizing::known_within(&s, limits, off) else { return 0.0 };
         let rate = sizing.metric.length(d);
         // Across the edge the face curves, too, and far enough for a second row.
         let across = sizing.metric.determinant().max(0.0).sqrt() / sizing.area.max(1e-300) * jet.d1.length()

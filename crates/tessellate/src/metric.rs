@@ -75,6 +75,12 @@ pub(crate) struct Sizing {
 impl Sizing {
     /// `None` where the surface has no tangent plane (a pole, an apex).
     pub fn new(jet: &SurfaceJet, limits: &Limits) -> Option<Self> {
+        Self::known_within(jet, limits, 0.0)
+    }
+
+    /// The same for a place that is known only within `distance`: the normals turn no faster than on a ball of that radius, since
+    /// in tighter folds nobody knows which side the place is on.
+    pub fn known_within(jet: &SurfaceJet, limits: &Limits, distance: f64) -> Option<Self> {
         let cross = jet.du.cross(jet.dv);
         let area = cross.length();
         let speed = jet.du.length();
@@ -96,7 +102,7 @@ impl Sizing {
         let (cosine, sine) = if radius > 0.0 { (half / radius, s12 / radius) } else { (1.0, 0.0) };
         let size = |k: f64| {
             let by_sag = k.abs() / (8.0 * limits.tolerance);
-            let by_angle = (k / limits.angle).powi(2);
+            let by_angle = (k.abs().min(1.0 / distance) / limits.angle).powi(2);
             by_sag.max(by_angle).max(1.0 / (limits.length * limits.length))
         };
         let (m1, m2) = (size(k1), size(k2));
