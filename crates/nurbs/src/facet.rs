@@ -90,6 +90,21 @@ pub fn facet_bound(
     bound
 }
 
+/// Upper bound of the distance between the image of a segment of parameter space and the chord between its ends' points; from
+/// second derivatives about the segment only, however wild the surface is beside it. Infinite where nothing can be said.
+pub fn chord_bound(
+    bounds: &SurfaceBounds<'_>,
+    uv: [DVec2; 2],
+    xyz: [DVec3; 2],
+    scratch: &mut Vec<Piece>,
+) -> f64 {
+    match bounds.surface() {
+        Surface::Plane { .. } => 0.0,
+        Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Sphere { .. } => f64::INFINITY,
+        _ => general::chord_bound(bounds, uv, xyz, scratch),
+    }
+}
+
 /// Barycentric coordinates of point (i, j) of the lattice that divides every edge of a triangle in `parts`.
 fn lattice_point(i: usize, j: usize, parts: usize) -> [f64; 3] {
     [i, j, parts - i - j].map(|k| k as f64 / parts as f64)

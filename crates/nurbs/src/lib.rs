@@ -52,7 +52,7 @@ pub use curve::{CompositeSegment, Curve, CurveJet};
 pub use curve2::{Curve2, Curve2Jet};
 pub use error::NurbsError;
 pub use explicit::LineCrossings;
-pub use facet::{Component, Facet, FacetBound, facet_bound};
+pub use facet::{Component, Facet, FacetBound, chord_bound, facet_bound};
 pub use frame::{Frame, Frame2};
 pub use invert_curve::{CurveInversion, CurveInverter};
 pub use invert_surface::{Inversion, SurfaceInverter};

@@ -5,7 +5,9 @@ use crate::face::FaceWork;
 use crate::metric::{Limits, Metric};
 use crate::options::{Bound, Cancel, Options};
 use crate::triangulate::{Location, NONE, orient};
-use chordal_nurbs::{DVec2, DVec3, Facet, FacetBound, Piece, Surface, SurfaceBounds, facet_bound};
+use chordal_nurbs::{
+    DVec2, DVec3, Facet, FacetBound, Piece, Surface, SurfaceBounds, chord_bound, facet_bound,
+};
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -55,6 +57,12 @@ const CREASE_BESIDE: f64 = 0.01;
 
 /// Facets lower than this share of the tolerance may face any way.
 const FOLD_HEIGHT: f64 = 0.05;
+
+/// A chord this many tolerances off, bounded by itself, is clearly not what is wrong with its facet.
+const FINE_CHORD: f64 = 0.5;
+
+/// A chord that bends by less than this share of a facet's height is straight to it.
+const CHORD_BENDS: f64 = 0.25;
 
 /// What is wrong with a triangle.
 pub(crate) enum Fault {
@@ -240,6 +248,15 @@ impl<'a> Prover<'a> {
         }
     }
 
+    /// How far an edge is from the surface by itself: where that is little, what is wrong, or not known, lies inside the facet.
+    fn chord_error(&mut self, facet: &Facet, i: usize) -> f64 {
+        if self.sampled {
+            return f64::INFINITY;
+        }
+        let ends = [(i + 1) % 3, (i + 2) % 3];
+        chord_bound(self.bounds, ends.map(|k| facet.uv[k]), ends.map(|k| facet.xyz[k]), &mut self.scratch)
+    }
+
     /// A triangle whose corners are not three vertices is not written.
     fn collapsed(work: &FaceWork<'_, '_>, t: u32) -> bool {
         let [a, b, c] = work.mesh.triangles[t as usize].map(|v| work.key(v));
@@ -261,6 +278,7 @@ impl<'a> Prover<'a> {
         if bound.error > tolerance {
             let coarse = (0..3).filter(|&i| boundary[i] && bound.edges[i] > tolerance);
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
+            let worst = worst.filter(|&i| self.chord_error(&facet, i) > FINE_CHORD * tolerance);
             let worst = worst.or_else(|| close_to_boundary(work, &facet, boundary, FOLD_HEIGHT * tolerance));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
@@ -428,8 +446,8 @@ fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize
     clearly_longest(inner, length)
 }
 
-/// A boundary edge whose image on the surface passes the corner opposite to it nearer than this: what is wrong with the facet is
-/// the chord's, and no point inside helps.
+/// A bent boundary edge whose image on the surface passes the corner opposite to it nearer than this: what is wrong with the facet
+/// is the chord's, and no point inside helps.
 fn close_to_boundary(
     work: &FaceWork<'_, '_>,
     facet: &Facet,
@@ -439,7 +457,10 @@ fn close_to_boundary(
     (0..3).filter(|&i| boundary[i]).find(|&i| {
         let [p, a, b] = [0, 1, 2].map(|k| facet.uv[(i + k) % 3]);
         let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        work.context.surface.point(a.lerp(b, along)).distance(facet.xyz[i]) <= distance
+        let height = work.context.surface.point(a.lerp(b, along)).distance(facet.xyz[i]);
+        let [from, to] = [1, 2].map(|k| facet.xyz[(i + k) % 3]);
+        let bend = work.context.surface.point(a.midpoint(b)).distance(from.midpoint(to));
+        height <= distance && bend > CHORD_BENDS * height
     })
 }
 

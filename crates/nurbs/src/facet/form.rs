@@ -79,6 +79,11 @@ impl Form {
         uu * d.x * d.x + 2.0 * uv * (d.x * d.y).abs() + vv * d.y * d.y
     }
 
+    /// The largest second derivative along the segment `d` through the middle of which it was taken.
+    pub fn largest_along(&self, d: DVec2) -> f64 {
+        self.middle_along(d).abs() + 0.5 * self.third_along(d, d, d).abs() + self.reach_along(d)
+    }
+
     /// The modelled interpolation error over the triangle with these edges.
     pub fn error(&self, d: &[DVec2; 3]) -> Cubic {
         let h = d.map(|d| self.middle_along(d));

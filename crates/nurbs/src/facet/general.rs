@@ -134,6 +134,26 @@ pub(super) fn bound(
     }
 }
 
+/// See [`super::chord_bound`]: the error of linear interpolation across the chord, in two directions.
+pub(super) fn chord_bound(
+    bounds: &SurfaceBounds<'_>,
+    uv: [DVec2; 2],
+    xyz: [DVec3; 2],
+    pieces: &mut Vec<Piece>,
+) -> f64 {
+    pieces.clear();
+    let kink = bounds.pieces(UvBox::from_points(uv), pieces);
+    let (middle, d) = (uv[0].midpoint(uv[1]), uv[1] - uv[0]);
+    let least_weight = pieces.iter().fold(f64::INFINITY, |m, p| m.min(p.least_weight));
+    let Some(chord) = (xyz[1] - xyz[0]).try_normalize().filter(|_| !pieces.is_empty()) else {
+        return f64::INFINITY;
+    };
+    let across = chord.any_orthonormal_vector();
+    let off = [across, chord.cross(across)]
+        .map(|w| Form::new(pieces, middle, w, xyz[0]).largest_along(d) / (8.0 * least_weight));
+    off[0].hypot(off[1]) + 0.25 * kink.dot(d.abs())
+}
+
 /// The largest error along the normal with which a facet whose image shifts so far sideways passes.
 fn allowed_along(parts: &Parts, slope: f64, enough: f64) -> f64 {
     parts.sideways.iter().fold(enough, |least, &shift| {
