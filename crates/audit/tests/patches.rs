@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use chordal_nurbs::{
-    Curve, DVec2, DVec3, Facet, Frame, NurbsCurve3, NurbsSurface, Surface, SurfaceBounds, UvBox, facet_bound,
+    Curve, DVec2, DVec3, Facet, Frame, NurbsCurve3, NurbsSurface, Surface, SurfaceBounds, UvBox, chord_bound,
+    facet_bound,
 };
 
 /// Mixed into all random numbers: CHORDAL_SEED hunts elsewhere.
@@ -242,6 +243,29 @@ fn no_facet_of_ten_thousand_patches_is_farther_off_than_its_bound() {
     println!("{infinite} facets have no bound; {far_sides} points needed a search");
     quantiles("inner facets", inner);
     quantiles("whole faces", bounded);
+}
+
+#[test]
+fn no_chord_of_a_patch_is_farther_off_than_its_bound() {
+    let mut random = Random(seed().rotate_left(11) ^ 0x2545_F491_4F6C_DD1D);
+    let (mut ratios, mut scratch) = (Vec::new(), Vec::new());
+    for round in 0..3_000 {
+        let surface = patch(&mut random);
+        let [a, b, _] = triangle(&mut random);
+        let ends = [a, b].map(|p| surface.point(p));
+        let line = (ends[1] - ends[0]).normalize_or_zero();
+        let off = |t: f64| (surface.point(a.lerp(b, t)) - ends[0]).reject_from_normalized(line).length();
+        let seen = (0..=200).map(|k| off(f64::from(k) / 200.0)).fold(0.0, f64::max);
+        let bounds = SurfaceBounds::new(&surface, UvBox::from_points([a, b]), seen.max(1e-9));
+        let bound = chord_bound(&bounds, [a, b], ends, &mut scratch);
+        let scale = ends[0].abs().max_element();
+        assert!(bound >= seen * (1.0 - 1e-9) - 1e-13 * scale, "patch {round}: {bound:e} is below {seen:e}");
+        if bound.is_finite() && seen > 1e-11 * scale {
+            ratios.push(bound / seen);
+        }
+    }
+    assert!(ratios.len() > 2_000, "only {} chords have a bound", ratios.len());
+    quantiles("chords", ratios);
 }
 
 /// A parallelogram of a patch as a grid of facets whose inner corners are shaken.
