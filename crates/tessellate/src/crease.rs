@@ -54,10 +54,6 @@ struct Step {
 impl Unroll<'_, '_> {
     /// Cuts the face at every crease of its surface that it reaches over.
     pub fn cut_at_creases(&mut self, mut polygons: Vec<Vec<ChartPoint>>) -> Vec<Vec<ChartPoint>> {
-        // Loops that cross have no inside.
-        if self.context.last_resort {
-            return polygons;
-        }
         let surface = self.context.surface;
         let extent = UvBox::from_points(polygons.iter().flatten().map(|p| p.uv));
         let mut crossings = Crossings::new();

@@ -76,16 +76,18 @@ pub(crate) fn mesh_face(
 ) -> Outcome {
     let mut seam_chord = SEAM_CHORD;
     let mut accept = context.accept;
+    let mut creased = true;
     for _ in 0..SEAM_TRIES {
-        match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept }) {
+        match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept, creased }) {
             Ok(Attempt::Over(outcome)) => return outcome,
+            Ok(Attempt::Crossing) => creased = false,
             Ok(Attempt::FinerSeam) => seam_chord *= 0.7,
             // Nothing more can be done about it: better a face that is known to be off than none.
             Ok(Attempt::Stuck) => accept = true,
             Err(reason) => return Outcome::Failed(reason),
         }
     }
-    match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept: true }) {
+    match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept: true, creased: false }) {
         Ok(Attempt::Over(outcome)) => outcome,
         Ok(_) => Outcome::Failed("its seam cannot be cut finely enough".into()),
         Err(reason) => Outcome::Failed(reason),
@@ -98,6 +100,8 @@ struct Try {
     seam_chord: f64,
     /// Take what there is, with the error it has.
     accept: bool,
+    /// Cut along the creases of the surface.
+    creased: bool,
 }
 
 /// How one attempt at a face ended.
@@ -105,6 +109,8 @@ enum Attempt {
     Over(Outcome),
     /// The seam must be cut finer.
     FinerSeam,
+    /// The loops cross in truth: they have no inside that could be cut along creases.
+    Crossing,
     /// A triangle can be mended by nothing.
     Stuck,
 }
@@ -148,7 +154,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         how: Try,
     ) -> Result<Attempt, String> {
         let started = Instant::now();
-        let chart = Chart::new(context, limits, how.seam_chord)?;
+        let chart = Chart::new(context, limits, how.seam_chord, how.creased)?;
         let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
         let shape = shape(context, limits, UvBox::from_points(points.iter().copied()));
         let mut clipped = false;
@@ -158,6 +164,9 @@ impl<'a, 's> FaceWork<'a, 's> {
                 let coarse = coarse_chords(context, &chart, &culprits);
                 if !context.last_resort && !coarse.is_empty() {
                     return Ok(Attempt::Over(Outcome::Finer(coarse)));
+                }
+                if how.creased && context.surface.creases.iter().any(|c| !c.is_empty()) {
+                    return Ok(Attempt::Crossing);
                 }
                 let ears = clip_ears(&points, &chart.loops).ok_or("its loops cross each other")?;
                 clipped = true;

@@ -41,11 +41,16 @@ pub(crate) const SEAM_CHORD: f64 = 0.9;
 const SEAM_DEPTH: usize = 12;
 
 impl Chart {
-    /// Unrolls the face; seams get chords of this length in the metric.
+    /// Unrolls the face; seams get chords of this length in the metric. `creased`: cut along its surface's creases.
     ///
     /// # Errors
     /// A sentence, where the loops bound no region.
-    pub fn new(context: &FaceContext<'_, '_>, limits: &Limits, seam_chord: f64) -> Result<Self, String> {
+    pub fn new(
+        context: &FaceContext<'_, '_>,
+        limits: &Limits,
+        seam_chord: f64,
+        creased: bool,
+    ) -> Result<Self, String> {
         let (loops, lone) = context.loops()?;
         let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new(), reversed: false };
         let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
@@ -61,7 +66,9 @@ impl Chart {
         let mut polygons = unroll.nest(outer, plain)?;
         let grid = Grid::over(UvBox::from_points(polygons.iter().flatten().map(|p| p.uv)).size());
         polygons.iter_mut().flatten().for_each(|p| p.uv = grid.snap(p.uv));
-        let polygons = unroll.cut_at_creases(polygons);
+        if creased {
+            polygons = unroll.cut_at_creases(polygons);
+        }
         let subdivided_poles = |polygon| unroll.subdivided_poles(polygon, &grid);
         let mut chart =
             Chart { private: unroll.private.clone(), reversed: unroll.reversed, grid, ..Chart::default() };
