@@ -116,6 +116,18 @@ def weight_range(path: Path) -> None:
     write_sheet(s, [patch(s, (3, 3), grid(5, 5, waves), weights=weights)], path)
 
 
+@case("folded_strip", "a strip of degree 1 folded at right angles; the face ends at a fold", solids=0, closed=False, faces=1)
+def folded_strip(path: Path) -> None:
+    s = Step(path.stem)
+    corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 20.0), (10.0, 20.0)]
+    at = lambda i, z: (*corners[i], z)
+    net = [[at(i, 0.0), at(i, 5.0)] for i in range(len(corners))]
+    surface = s.spline_surface((1, 1), net, (tuple(range(6)), (2, 1, 1, 1, 1, 2)), ((0, 1), (2, 2)))
+    around = [at(i, 0.0) for i in range(4)] + [at(i, 5.0) for i in reversed(range(4))]
+    uses = [s.segment(a, b) for a, b in zip(around, around[1:] + around[:1])]
+    write_sheet(s, [s.face([s.bound(s.loop(uses), outer=True)], surface)], path)
+
+
 @case("octant", "an octant of a ball as a rational patch with a collapsed row", solids=1, closed=True, faces=4)
 def octant(path: Path) -> None:
     s, r, h = Step(path.stem), 10.0, math.sqrt(0.5)

@@ -50,6 +50,14 @@ fn parts_get_their_tolerance_from_their_largest_placement() {
     assert_eq!(outcome.report.options.tolerance, 0.3);
 }
 
+/// What lies on the last fold belongs to the panel before it, with that panel's normal.
+#[test]
+fn a_face_that_ends_at_a_crease_gets_two_triangles_per_panel() {
+    let outcome = chordal::run(&Job::new(corpus("folded_strip"))).expect("a mesh");
+    assert!(outcome.report.clean, "{:?}", outcome.report.undone);
+    assert_eq!((outcome.report.triangles, outcome.report.rounds), (6, 0));
+}
+
 #[test]
 fn reports_survive_a_round_trip() {
     let report = chordal::run(&Job::new(corpus("bracket"))).expect("a mesh").report;

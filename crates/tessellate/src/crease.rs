@@ -79,8 +79,12 @@ impl Unroll<'_, '_> {
         let snapped: Vec<Vec<ChartPoint>> =
             polygons.iter().map(|p| p.iter().map(|p| self.snapped(line, p, near)).collect()).collect();
         let reaches = |side: f64| snapped.iter().flatten().any(|p| side * line.off(p.uv) > 0.0);
-        if !reaches(1.0) || !reaches(-1.0) {
-            return polygons;
+        let aside = self.context.surface.surface.beside_crease(line.axis, line.value);
+        match (reaches(-1.0), reaches(1.0)) {
+            (true, true) => {}
+            (true, false) => return beside(line, snapped, -aside),
+            (false, true) => return beside(line, snapped, aside),
+            (false, false) => return polygons,
         }
         let crosses_edge = snapped.iter().any(|polygon| {
             (0..polygon.len()).any(|i| {
@@ -99,7 +103,6 @@ impl Unroll<'_, '_> {
             let inner = self.along_crease(line, a, b);
             cutter.add_cut(from, to, inner);
         }
-        let aside = self.context.surface.surface.beside_crease(line.axis, line.value);
         cutter.walk(aside)
     }
 
@@ -166,6 +169,7 @@ impl Unroll<'_, '_> {
 /// The creases, at every turn of a closed direction, that lie inside the box.
 fn lines_within(creases: &[f64], period: Option<f64>, extent: UvBox, axis: usize) -> Vec<f64> {
     let (low, high) = (extent.min[axis], extent.max[axis]);
+    let near = NEAR * (high - low);
     let mut lines: Vec<f64> = creases
         .iter()
         .flat_map(|&value| match period {
@@ -175,11 +179,19 @@ fn lines_within(creases: &[f64], period: Option<f64>, extent: UvBox, axis: usize
                 turns.map(|turn| value + f64::from(turn) * period).collect()
             }
         })
-        .filter(|&value| value > low && value < high)
+        .filter(|&value| value > low - near && value < high + near)
         .collect();
     lines.sort_by(f64::total_cmp);
     lines.truncate(MAX_LINES);
     lines
+}
+
+/// A face that ends at a line lies on one side of it: what lies on the line is moved a hair to that side.
+fn beside(line: Line, mut polygons: Vec<Vec<ChartPoint>>, aside: f64) -> Vec<Vec<ChartPoint>> {
+    for point in polygons.iter_mut().flatten().filter(|p| line.off(p.uv) == 0.0) {
+        point.uv[line.axis] += aside;
+    }
+    polygons
 }
 
 /// The polygons around one line.
