@@ -339,8 +339,13 @@ pub struct RenderArgs {
     /// How much nearer than what fits, about the middle of the picture.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_zoom)]
     pub zoom: ZoomArg,
+    #[arg(long, value_enum, default_value = "mesh")]
+    pub mode: ModeArg,
     #[arg(long, value_enum, default_value = "shaded")]
     pub style: StyleArg,
+    /// Leave out the lines of the style.
+    #[arg(long)]
+    pub no_lines: bool,
     /// light, dark, transparent, or a colour #rrggbb.
     #[arg(long, value_name = "COLOUR", default_value = "light")]
     pub background: String,
@@ -388,6 +393,14 @@ pub enum ProjectionArg {
     Orthographic,
     /// 30° from the lower to the upper border.
     Perspective,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ModeArg {
+    /// The triangles of the mesh.
+    Mesh,
+    /// The exact surfaces, evaluated for the view to half a pixel and trimmed at every sample (shaded and edges).
+    Nurbs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

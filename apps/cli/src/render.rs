@@ -20,10 +20,10 @@ pub fn run(args: &RenderArgs) -> Exit {
 #[cfg(feature = "render")]
 mod drawing {
     use super::{Exit, RenderArgs, say};
-    use crate::args::{DeviceArg, ProjectionArg, StyleArg};
+    use crate::args::{DeviceArg, ModeArg, ProjectionArg, StyleArg};
     use chordal::gpu::{Background, DeviceChoice, Projection, RenderOptions, SectionPlane, Style, View};
     use chordal::nurbs::DVec3;
-    use chordal::{RenderJob, Rendered};
+    use chordal::{RenderJob, RenderMode, Rendered};
 
     pub fn run(args: &RenderArgs) -> Exit {
         let job = match job(args) {
@@ -70,6 +70,7 @@ mod drawing {
                 StyleArg::Curvature => Style::Curvature,
                 StyleArg::Error => Style::Error,
             })
+            .with_lines(!args.no_lines)
             .with_background(background)
             .with_section(section);
         Ok(RenderJob {
@@ -77,6 +78,10 @@ mod drawing {
             output: args.output.clone(),
             mesh: chordal::JobOptions::default().with_tolerance(args.tolerance),
             picture,
+            mode: match args.mode {
+                ModeArg::Mesh => RenderMode::Mesh,
+                ModeArg::Nurbs => RenderMode::Nurbs,
+            },
             device: match args.device {
                 DeviceArg::Best => DeviceChoice::Best,
                 DeviceArg::Hardware => DeviceChoice::Hardware,
@@ -101,13 +106,12 @@ mod drawing {
 
     fn tell(args: &RenderArgs, rendered: &Rendered) {
         let report = &rendered.report;
-        say(&format!(
-            "{}: {} triangles of {} faces, drawn by {}",
-            args.output.display(),
-            report.triangles,
-            report.faces.total,
-            rendered.adapter
-        ));
+        let what = match rendered.evaluated {
+            None => format!("{} triangles of {} faces", report.triangles, report.faces.total),
+            Some(e) if e.meshed > 0 => format!("{} points ({} faces drawn as triangles)", e.points, e.meshed),
+            Some(e) => format!("{} points of {} faces", e.points, report.faces.total),
+        };
+        say(&format!("{}: {what}, drawn by {}", args.output.display(), rendered.adapter));
         if let Some(legend) = rendered.legend {
             let what = match args.style {
                 StyleArg::Curvature => "mean curvature, 1/mm",

@@ -62,7 +62,7 @@ pub use process::peak_memory;
 pub use progress::{OnProgress, Progress};
 pub use quantity::{QuantityError, Tolerance, parse_angle, parse_length};
 #[cfg(feature = "gpu")]
-pub use render::{RenderError, RenderJob, Rendered, render};
+pub use render::{Evaluated, RenderError, RenderJob, RenderMode, Rendered, render};
 pub use report::{REPORT_SCHEMA, Report};
 pub use resolve::{Resolved, resolve};
 pub use sewing::{GapSurvey, OpenEntry, Sew, SewingEntry, sew_model};

@@ -1,10 +1,32 @@
 //! Pictures of models.
 
 use crate::{Job, JobError, JobOptions, OnProgress, Report, run, whole_file};
-use chordal_gpu::{DeviceChoice, Gpu, GpuError, Legend, RenderOptions, Renderer, mesh_scenery};
+use chordal_gpu::{
+    DeviceChoice, ExactRenderer, Gpu, GpuError, Legend, RenderOptions, Renderer, Style, exact_model,
+    mesh_scenery,
+};
 use chordal_tessellate::Cancel;
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RenderMode {
+    /// The triangles of the mesh.
+    #[default]
+    Mesh,
+    /// The exact surfaces, evaluated for the view and trimmed at every sample.
+    Nurbs,
+}
+
+/// What exact pictures took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Evaluated {
+    /// Points evaluated on the device.
+    pub points: usize,
+    /// Faces without an exact form, drawn as triangles.
+    pub meshed: usize,
+}
 
 /// A picture to be taken of one file.
 #[derive(Clone)]
@@ -15,6 +37,7 @@ pub struct RenderJob {
     /// How the model is meshed.
     pub mesh: JobOptions,
     pub picture: RenderOptions,
+    pub mode: RenderMode,
     pub device: DeviceChoice,
     pub cancel: Cancel,
     pub on_progress: Option<OnProgress>,
@@ -37,6 +60,8 @@ pub struct Rendered {
     pub adapter: String,
     /// What the colours mean, of measured styles.
     pub legend: Option<Legend>,
+    /// Of exact pictures.
+    pub evaluated: Option<Evaluated>,
     /// How the model was meshed.
     pub report: Report,
 }
@@ -68,10 +93,23 @@ pub fn render(job: &RenderJob) -> Result<Rendered, RenderError> {
         on_progress: job.on_progress.clone(),
     };
     let outcome = run(&meshing)?;
-    let (scenery, legend) = mesh_scenery(&outcome.scene, &outcome.model, job.picture.style);
-    let picture = Renderer::new(&gpu)?.render(&gpu, &scenery, &job.picture)?;
+    let (scene, model) = (&outcome.scene, &outcome.model);
+    let renderer = Renderer::new(&gpu)?;
+    // What measures or shows the mesh is drawn from it.
+    let of_mesh = matches!(job.picture.style, Style::Wireframe | Style::Curvature | Style::Error);
+    let (picture, legend, points) = if job.mode == RenderMode::Mesh || of_mesh {
+        let (scenery, legend) = mesh_scenery(scene, model, job.picture.style);
+        (renderer.render(&gpu, scene, &scenery, &job.picture)?, legend, None)
+    } else {
+        let exact = exact_model(scene, model);
+        let faces = ExactRenderer::new(&gpu)?;
+        let (picture, points) =
+            renderer.render_exact(&gpu, (&faces, &exact), (scene, model), &job.picture)?;
+        let meshed = exact.parts.iter().map(|p| p.meshed.len()).sum();
+        (picture, None, Some(Evaluated { points, meshed }))
+    };
     write(&job.output, &picture.to_png()?)?;
-    Ok(Rendered { adapter: gpu.name().to_owned(), legend, report: outcome.report })
+    Ok(Rendered { adapter: gpu.name().to_owned(), legend, evaluated: points, report: outcome.report })
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {

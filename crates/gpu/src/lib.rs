@@ -8,6 +8,8 @@ mod device;
 mod draw;
 mod error;
 mod evaluate;
+mod exact;
+mod host_grid;
 mod kernels;
 mod layout;
 mod real;
@@ -17,11 +19,13 @@ mod surfaces;
 
 pub use device::{DeviceChoice, Gpu};
 pub use draw::{
-    Background, Camera, Legend, Picture, Placed, Projection, RenderOptions, Renderer, Scenery, SectionPlane,
-    Shape, Style, Vertex, View, mesh_scenery,
+    Background, Camera, ExactRenderer, Legend, PIXEL_ERROR, Picture, Placed, Projection, RenderOptions,
+    Renderer, Scenery, SectionPlane, Shape, Style, Vertex, View, mesh_scenery, scene_outline,
 };
 pub use error::GpuError;
 pub use evaluate::{Evaluated, Evaluation, Evaluator, OnDevice, Search, Variant, Wanted, evaluate_twin};
+pub use exact::{ExactFace, ExactModel, ExactPart, exact_model};
+pub use host_grid::{HIGHEST_DEGREE, host_grid, host_peaks};
 pub use real::Real;
 pub use samples::{Request, Samples, sorted_by_span};
 pub use shaders::{SHADERS, Shader};

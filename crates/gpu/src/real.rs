@@ -24,6 +24,8 @@ pub trait Real:
     const WGSL: &'static str;
     /// Half the distance from 1 to the next number: the largest relative error of one rounding.
     const UNIT: f64;
+    /// The squared product of two derivatives is rounding below this share of the longer one to the fourth power.
+    const DEGENERATE: f64;
     fn from_f64(value: f64) -> Self;
     fn to_f64(self) -> f64;
     fn square_root(self) -> Self;
@@ -40,6 +42,7 @@ pub trait Real:
 impl Real for f32 {
     const WGSL: &'static str = "f32";
     const UNIT: f64 = f32::EPSILON as f64 / 2.0;
+    const DEGENERATE: f64 = 1e-10;
     fn from_f64(value: f64) -> Self {
         value as f32
     }
@@ -57,6 +60,7 @@ impl Real for f32 {
 impl Real for f64 {
     const WGSL: &'static str = "f64";
     const UNIT: f64 = f64::EPSILON / 2.0;
+    const DEGENERATE: f64 = 4e-28;
     fn from_f64(value: f64) -> Self {
         value
     }

@@ -53,15 +53,39 @@ pub(crate) const FIND_SPANS: Shader =
     kernel!(&[(0, true), (1, true), (2, false), (5, true), (7, false)], "find_spans", "common");
 pub(crate) const FACES: Shader = drawing!("faces");
 pub(crate) const LINES: Shader = drawing!("lines");
+pub(crate) const EXACT: Shader = Shader {
+    name: "exact",
+    files: &[
+        include_str!("draw/view.wgsl"),
+        include_str!("exact/trim.wgsl"),
+        include_str!("draw/exact.wgsl"),
+    ],
+    bindings: &[],
+    generic: false,
+};
 
 /// All of them.
-pub const SHADERS: &[Shader] =
-    &[BASIS_INDEXED, BASIS_UNPACKED, BASIS_PACKED, TENSOR, DIRECT, BERNSTEIN, FIND_SPANS, FACES, LINES];
+pub const SHADERS: &[Shader] = &[
+    BASIS_INDEXED,
+    BASIS_UNPACKED,
+    BASIS_PACKED,
+    TENSOR,
+    DIRECT,
+    BERNSTEIN,
+    FIND_SPANS,
+    FACES,
+    LINES,
+    EXACT,
+];
 
 impl Shader {
     /// The whole source in the precision `R`.
     pub fn source<R: Real>(&self) -> String {
-        let alias = if self.generic { format!("alias real = {};\n", R::WGSL) } else { String::new() };
-        alias + &self.files.concat()
+        if !self.generic {
+            return self.files.concat();
+        }
+        let suffix = if R::WGSL == "f64" { "lf" } else { "f" };
+        let degenerate = format!("const DEGENERATE: real = {:e}{suffix};\n", R::DEGENERATE);
+        format!("alias real = {};\n{degenerate}{}", R::WGSL, self.files.concat())
     }
 }

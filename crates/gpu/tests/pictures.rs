@@ -5,7 +5,8 @@
 mod common;
 
 use chordal::gpu::{
-    Background, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style, View, mesh_scenery,
+    Background, ExactRenderer, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style, View,
+    exact_model, mesh_scenery,
 };
 use chordal::nurbs::DVec3;
 use chordal::{Job, JobOptions, Outcome, Tolerance};
@@ -28,7 +29,10 @@ fn meshed(model: &str, percent: f64) -> Outcome {
 
 fn drawn(outcome: &Outcome, options: &RenderOptions) -> Picture {
     let (scenery, _) = mesh_scenery(&outcome.scene, &outcome.model, options.style);
-    Renderer::new(gpu()).expect("shaders compile").render(gpu(), &scenery, options).expect("a picture")
+    Renderer::new(gpu())
+        .expect("shaders compile")
+        .render(gpu(), &outcome.scene, &scenery, options)
+        .expect("a picture")
 }
 
 fn small() -> RenderOptions {
@@ -66,8 +70,6 @@ fn corpus_models_look_as_they_did() {
             "bracket_edges",
             small().with_style(Style::Edges).with_background(Background::DARK),
         ),
-        ("bracket.step", 0.3, "bracket_error", small().with_style(Style::Error)),
-        ("bracket.step", 0.3, "bracket_wireframe", small().with_style(Style::Wireframe)),
         (
             "gear.step",
             0.05,
@@ -81,6 +83,19 @@ fn corpus_models_look_as_they_did() {
     for (model, percent, name, options) in cases {
         hold_against(name, &drawn(&meshed(model, percent), &options));
     }
+}
+
+/// Styles that show the mesh: more lines than the model's own edges, and no distance above the proven error.
+#[test]
+fn styles_of_the_mesh_show_it() {
+    let outcome = meshed("bracket.step", 0.3);
+    let dark = |p: &Picture| p.pixels.iter().filter(|p| p[1] < 90).count();
+    let shaded = drawn(&outcome, &small());
+    assert!(dark(&drawn(&outcome, &small().with_style(Style::Wireframe))) > 2 * dark(&shaded));
+    let (_, legend) = mesh_scenery(&outcome.scene, &outcome.model, Style::Error);
+    let (high, proven) = (legend.unwrap().high, outcome.report.proven_error.unwrap());
+    assert!(high > 0.1 * proven && high <= proven, "{high} {proven}");
+    assert!(drawn(&outcome, &small().with_style(Style::Error)).difference(&shaded, THRESHOLD) > 0.1);
 }
 
 /// The model far from the origin is drawn as sharply as the same one near it would be: single precision holds offsets only.
@@ -122,13 +137,77 @@ fn transparent_pictures_have_no_dark_borders() {
     }
 }
 
+/// Exact surfaces look like their mesh at a tolerance that no pixel shows, near and far, the trims close up too.
+#[test]
+fn exact_surfaces_look_like_a_fine_mesh() {
+    let models = [
+        "bracket.step",
+        "gear.step",
+        "blade.step",
+        "elliptic.step",
+        "cone_apex.step",
+        "figure_eight.step",
+        "sphere_holes.step",
+        "sphere_full.step",
+        "torus_hole.step",
+    ];
+    let faces = ExactRenderer::new(gpu()).unwrap();
+    let renderer = Renderer::new(gpu()).unwrap();
+    for model in models {
+        let outcome = meshed(model, 0.005);
+        let exact = exact_model(&outcome.scene, &outcome.model);
+        for zoom in [1.0, 7.0] {
+            let options = small().with_zoom(zoom);
+            let (picture, points) = renderer
+                .render_exact(gpu(), (&faces, &exact), (&outcome.scene, &outcome.model), &options)
+                .unwrap();
+            assert!(points > 0);
+            let share = picture.difference(&drawn(&outcome, &options), THRESHOLD);
+            assert!(share < 0.003, "{model} at zoom {zoom}: {:.2} % of the pixels differ", 100.0 * share);
+        }
+    }
+}
+
+/// Seen through no crack: inside the silhouette of a solid no sample shows the background, at any zoom, however coarse the mesh
+/// that the loops were taken from.
+#[test]
+fn neighbours_show_no_crack() {
+    let faces = ExactRenderer::new(gpu()).unwrap();
+    let renderer = Renderer::new(gpu()).unwrap();
+    let magenta = "#ff00ff".parse().unwrap();
+    for model in ["bracket.step", "fillets.step", "blade.step", "fillet_torus.step"] {
+        let outcome = meshed(model, 0.2);
+        let exact = exact_model(&outcome.scene, &outcome.model);
+        for zoom in [1.0, 3.3, 11.0] {
+            let options = small().with_zoom(zoom).with_lines(false).with_background(magenta);
+            let scene = (&outcome.scene, &outcome.model);
+            let (picture, _) = renderer.render_exact(gpu(), (&faces, &exact), scene, &options).unwrap();
+            let solid = drawn(&meshed(model, 0.005), &options);
+            let (w, h) = (i64::from(picture.width), i64::from(picture.height));
+            let is_background = |p: [u8; 4]| p[0] > p[1].saturating_add(60);
+            let deep = |x: i64, y: i64| {
+                (-2..=2).all(|dy| {
+                    (-2..=2).all(|dx| {
+                        let (x, y) = ((x + dx).clamp(0, w - 1), (y + dy).clamp(0, h - 1));
+                        !is_background(solid.pixels[(y * w + x) as usize])
+                    })
+                })
+            };
+            let cracks = (0..w * h)
+                .filter(|i| is_background(picture.pixels[*i as usize]) && deep(i % w, i / w))
+                .count();
+            assert_eq!(cracks, 0, "{model} at zoom {zoom}");
+        }
+    }
+}
+
 #[test]
 fn a_picture_beyond_the_device_is_refused() {
     let outcome = meshed("gear.step", 0.5);
     let (scenery, _) = mesh_scenery(&outcome.scene, &outcome.model, Style::Shaded);
     let renderer = Renderer::new(gpu()).unwrap();
     for (width, height) in [(0, 10), (100_000, 10)] {
-        let refused = renderer.render(gpu(), &scenery, &small().with_size(width, height));
+        let refused = renderer.render(gpu(), &outcome.scene, &scenery, &small().with_size(width, height));
         assert!(refused.is_err_and(|e| e.to_string().contains("pixels")));
     }
 }

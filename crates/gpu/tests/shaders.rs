@@ -13,7 +13,8 @@ fn validate(name: &str, source: &str, capabilities: Capabilities) {
 #[test]
 fn every_shader_validates() {
     for shader in SHADERS {
-        validate(shader.name, &shader.source::<f32>(), Capabilities::IMMEDIATES);
+        let sampled = Capabilities::IMMEDIATES | Capabilities::MULTISAMPLED_SHADING;
+        validate(shader.name, &shader.source::<f32>(), sampled);
         if shader.generic {
             let name = format!("{} in f64", shader.name);
             validate(&name, &shader.source::<f64>(), Capabilities::IMMEDIATES | Capabilities::FLOAT64);

@@ -34,5 +34,5 @@ fn fragment(in: FaceOut) -> @location(0) vec4<f32> {
     if view.fill.a > 0.0 {
         return vec4<f32>(view.fill.rgb, 1.0);
     }
-    return vec4<f32>(lit(in.color, normalize(in.normal), in.p), 1.0);
+    return vec4<f32>(lit(in.color, in.normal, in.p), 1.0);
 }

@@ -30,7 +30,8 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     out.p = select(a.xyz, b.xyz, at_b);
     var clip = select(ca, cb, at_b);
     clip = vec4<f32>(clip.xy + shift * view.line_width / view.viewport * clip.w, clip.zw);
-    out.clip = clip;
+    // In front of the faces that meet along the line, also where those fall away steeply.
+    out.clip = nearer(clip, out.p, 2.0 + view.line_width);
     return out;
 }
 

@@ -2,6 +2,7 @@
 
 use super::measures::{distance, diverging, mean_curvature, sequential};
 use super::{Placed, Scenery, Shape, Style, Vertex, camera, srgb};
+use crate::ExactModel;
 use chordal_brep::{FaceGeometry, Model, Part};
 use chordal_mesh::{FaceMesh, Rgba, Scene, ScenePart};
 use chordal_nurbs::Surface;
@@ -23,6 +24,16 @@ const ERROR_ROWS: usize = 4;
 
 /// Shapes for a style. `model` is what the scene was made of; measured styles need it.
 pub fn mesh_scenery(scene: &Scene, model: &Model, style: Style) -> (Scenery, Option<Legend>) {
+    scenery_of(scene, model, style, None)
+}
+
+/// As [`mesh_scenery`], without the faces that are drawn exactly.
+pub(crate) fn scenery_of(
+    scene: &Scene,
+    model: &Model,
+    style: Style,
+    exact: Option<&ExactModel>,
+) -> (Scenery, Option<Legend>) {
     let mut placements = scene.placements();
     placements.sort_by_key(|p| p.part);
     let placed: Vec<Placed> = placements
@@ -39,21 +50,32 @@ pub fn mesh_scenery(scene: &Scene, model: &Model, style: Style) -> (Scenery, Opt
         .iter()
         .zip(&model.parts)
         .enumerate()
-        .map(|(index, (part, exact))| shape_of(part, exact, style, unit(index)))
+        .map(|(index, (part, of_model))| {
+            let meshed = exact.map(|e| e.parts[index].meshed.as_slice());
+            shape_of(part, of_model, style, unit(index), meshed)
+        })
         .collect();
     let legend = paint(&mut painted, style);
     let shapes = painted.into_iter().map(|(shape, _)| shape).collect();
     (Scenery { shapes, placed }, legend)
 }
 
-/// The shape of a part and, of measured styles, the value at each vertex.
-fn shape_of(part: &ScenePart, exact: &Part, style: Style, unit: f64) -> (Shape, Vec<f64>) {
-    let own = part.mesh.positions.iter().copied();
-    let (low, high) =
-        camera::bounds(own.chain(part.pass_through.iter().flat_map(|t| t.points.iter().copied())));
-    let mut shape = Shape { middle: 0.5 * (low + high), ..Shape::default() };
+/// The shape of a part and, of measured styles, the value at each vertex; of the faces only those of `only`.
+fn shape_of(
+    part: &ScenePart,
+    exact: &Part,
+    style: Style,
+    unit: f64,
+    only: Option<&[usize]>,
+) -> (Shape, Vec<f64>) {
+    let (low, high) = camera::bounds(part_points(part));
+    let radius = 0.5 * low.distance(high);
+    let mut shape = Shape { middle: 0.5 * (low + high), radius, ..Shape::default() };
     let mut values = Vec::new();
     for (face, mesh) in part.mesh.faces.iter().enumerate() {
+        if only.is_some_and(|only| !only.contains(&face)) {
+            continue;
+        }
         let surface = match exact.faces.get(face).map(|f| &f.geometry) {
             Some(FaceGeometry::Surface(surface)) => Some(surface.as_ref()),
             _ => None,
@@ -77,7 +99,34 @@ fn shape_of(part: &ScenePart, exact: &Part, style: Style, unit: f64) -> (Shape, 
     (shape, values)
 }
 
-fn local(p: DVec3, middle: DVec3) -> [f32; 3] {
+fn part_points(part: &ScenePart) -> impl Iterator<Item = DVec3> {
+    part.mesh.positions.iter().chain(part.pass_through.iter().flat_map(|t| &t.points)).copied()
+}
+
+/// Points whose hull holds everything, in millimetres: the vertices of all placements, or, of large scenes, the corners of
+/// their boxes.
+pub fn scene_outline(scene: &Scene) -> Vec<DVec3> {
+    /// More vertices than this are stood for by boxes.
+    const MANY: usize = 2_000_000;
+    let placements = scene.placements();
+    let count: usize = placements.iter().map(|p| scene.parts[p.part].mesh.positions.len()).sum();
+    let mut points = Vec::new();
+    for placed in &placements {
+        let part = &scene.parts[placed.part];
+        if count <= MANY {
+            points.extend(part_points(part).map(|p| placed.world.transform_point3(p)));
+        } else if part_points(part).next().is_some() {
+            let (low, high) = camera::bounds(part_points(part));
+            points.extend((0..8).map(|corner| {
+                let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
+                placed.world.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
+            }));
+        }
+    }
+    points
+}
+
+pub(crate) fn local(p: DVec3, middle: DVec3) -> [f32; 3] {
     (p - middle).as_vec3().to_array()
 }
 

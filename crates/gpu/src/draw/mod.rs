@@ -1,6 +1,7 @@
 //! Drawing: scenes of meshes or of exact surfaces, without a window, into a picture.
 
 mod camera;
+mod exact;
 mod measures;
 mod mesh_shapes;
 mod picture;
@@ -8,7 +9,8 @@ mod renderer;
 mod shapes;
 
 pub use camera::{Camera, Projection, View};
-pub use mesh_shapes::{Legend, mesh_scenery};
+pub use exact::{ExactRenderer, PIXEL_ERROR};
+pub use mesh_shapes::{Legend, mesh_scenery, scene_outline};
 pub use picture::Picture;
 pub use renderer::Renderer;
 pub use shapes::{Placed, Scenery, Shape, Vertex};
@@ -90,6 +92,8 @@ pub struct RenderOptions {
     /// Move a camera with a place of its own so that it sees everything; named views always do.
     pub fit: bool,
     pub style: Style,
+    /// Draw the lines of the style.
+    pub lines: bool,
     pub background: Background,
     pub section: Option<SectionPlane>,
 }
@@ -103,6 +107,7 @@ impl Default for RenderOptions {
             zoom: 1.0,
             fit: false,
             style: Style::Shaded,
+            lines: true,
             background: Background::LIGHT,
             section: None,
         }
@@ -127,6 +132,9 @@ impl RenderOptions {
     }
     pub fn with_style(self, style: Style) -> Self {
         Self { style, ..self }
+    }
+    pub fn with_lines(self, lines: bool) -> Self {
+        Self { lines, ..self }
     }
     pub fn with_background(self, background: Background) -> Self {
         Self { background, ..self }

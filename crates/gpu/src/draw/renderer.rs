@@ -1,12 +1,18 @@
 //! Draws a scenery into a picture, with four samples a pixel.
 
-use super::{Background, Camera, Picture, RenderOptions, Scenery, Style, linear, srgb};
+use super::exact::refine_lines;
+use super::mesh_shapes::{scene_outline, scenery_of};
+use super::{
+    Background, Camera, ExactRenderer, Picture, Placed, RenderOptions, Scenery, Style, linear, srgb,
+};
 use crate::evaluate::{read_back, storage};
-use crate::{Gpu, GpuError, Shader, shaders};
+use crate::{ExactModel, Gpu, GpuError, Shader, shaders};
 use bytemuck::{Pod, Zeroable};
+use chordal_brep::Model;
+use chordal_mesh::Scene;
 use glam::{DAffine3, DMat4, DVec3, Mat4};
 use std::ops::Range;
-use wgpu::{BindGroup, Buffer, BufferUsages, RenderPipeline, TextureFormat};
+use wgpu::{BindGroup, Buffer, BufferUsages, RenderPass, RenderPipeline, TextureFormat};
 
 const COLOR: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 const DEPTH: TextureFormat = TextureFormat::Depth32Float;
@@ -22,6 +28,7 @@ pub(crate) struct ViewData {
     eye: f32,
     line_color: [f32; 4],
     fill: [f32; 4],
+    depth: [f32; 4],
     section: [f32; 4],
 }
 
@@ -56,6 +63,23 @@ struct Draw {
     placed: Range<u32>,
 }
 
+impl Group {
+    fn draw_faces(&self, pass: &mut RenderPass) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for draw in self.draws.iter().filter(|d| !d.indices.is_empty()) {
+            pass.draw_indexed(draw.indices.clone(), draw.base_vertex, draw.placed.clone());
+        }
+    }
+
+    fn draw_lines(&self, pass: &mut RenderPass) {
+        pass.set_bind_group(0, &self.lines, &[]);
+        for draw in self.draws.iter().filter(|d| !d.line_vertices.is_empty()) {
+            pass.draw(draw.line_vertices.clone(), draw.placed.clone());
+        }
+    }
+}
+
 impl Renderer {
     /// Compiles the shaders.
     ///
@@ -68,63 +92,91 @@ impl Renderer {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         };
-        // Faces are moved back a little, by their slope, so that the lines on them win.
-        let back = wgpu::DepthBiasState { constant: 4, slope_scale: 1.5, clamp: 0.0 };
+        let entries = ["vertex", "fragment"];
         gpu.watched("compiling shaders", || {
             Ok(Self {
-                faces: pipeline(gpu, shaders::FACES, &[Some(corners)], back),
-                lines: pipeline(gpu, shaders::LINES, &[], wgpu::DepthBiasState::default()),
+                faces: pipeline(gpu, shaders::FACES, entries, &[Some(corners)]),
+                lines: pipeline(gpu, shaders::LINES, entries, &[]),
             })
         })
     }
 
-    /// Takes a picture.
+    /// Takes a picture of meshes.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] for pictures or parts beyond the device, and what [`Gpu::watched`] gives.
-    pub fn render(&self, gpu: &Gpu, scenery: &Scenery, options: &RenderOptions) -> Result<Picture, GpuError> {
-        let camera = options.camera(&scenery.outline());
+    pub fn render(
+        &self,
+        gpu: &Gpu,
+        scene: &Scene,
+        scenery: &Scenery,
+        options: &RenderOptions,
+    ) -> Result<Picture, GpuError> {
+        let camera = options.camera(&scene_outline(scene));
+        Ok(self.picture(gpu, scenery, &camera, options, None)?.0)
+    }
+
+    /// Takes a picture of the exact faces of a model; what has no exact form is drawn as its mesh. Also the number of
+    /// points evaluated. Styles that measure or show the mesh are drawn from it, by [`Self::render`].
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    pub fn render_exact(
+        &self,
+        gpu: &Gpu,
+        exact: (&ExactRenderer, &ExactModel),
+        (scene, model): (&Scene, &Model),
+        options: &RenderOptions,
+    ) -> Result<(Picture, usize), GpuError> {
+        let camera = options.camera(&scene_outline(scene));
+        let (mut scenery, _) = scenery_of(scene, model, options.style, Some(exact.1));
+        refine_lines(&mut scenery, scene, model, &camera);
+        self.picture(gpu, &scenery, &camera, options, Some(exact))
+    }
+
+    fn picture(
+        &self,
+        gpu: &Gpu,
+        scenery: &Scenery,
+        camera: &Camera,
+        options: &RenderOptions,
+        exact: Option<(&ExactRenderer, &ExactModel)>,
+    ) -> Result<(Picture, usize), GpuError> {
         let target = Target::new(gpu, options.size)?;
-        gpu.watched("drawing", || {
-            let view = view_buffer(gpu, &camera, options);
-            let placements: Vec<_> = scenery
-                .placed
-                .iter()
-                .map(|p| {
-                    placement(
-                        &camera,
-                        &(p.world * DAffine3::from_translation(scenery.shapes[p.shape].middle)),
-                        p.color,
-                    )
-                })
-                .collect();
+        let points = gpu.watched("drawing", || {
+            let view = view_buffer(gpu, camera, options);
+            let to_data = |p: &Placed| {
+                let local = DAffine3::from_translation(scenery.shapes[p.shape].middle);
+                placement(camera, &(p.world * local), p.color)
+            };
+            let placements: Vec<_> = scenery.placed.iter().map(to_data).collect();
             let placements = storage(gpu, "the placements of all parts", &placements)?;
-            let scene = group_of(gpu, &self.faces, &[(0, &view), (1, &placements)]);
+            let scene = bind_group(gpu, &self.faces, &[(0, &view), (1, &placements)]);
             let groups = self.groups(gpu, scenery, &view, &placements)?;
+            let frame = match exact {
+                Some((renderer, model)) => {
+                    Some((renderer, renderer.frame(gpu, model, scenery, camera, &view, &placements)?))
+                }
+                None => None,
+            };
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             {
                 let mut pass = target.begin(&mut encoder, options.background);
                 pass.set_pipeline(&self.faces);
                 pass.set_bind_group(0, &scene, &[]);
-                for group in &groups {
-                    pass.set_vertex_buffer(0, group.vertices.slice(..));
-                    pass.set_index_buffer(group.indices.slice(..), wgpu::IndexFormat::Uint32);
-                    for draw in &group.draws {
-                        pass.draw_indexed(draw.indices.clone(), draw.base_vertex, draw.placed.clone());
-                    }
+                groups.iter().for_each(|group| group.draw_faces(&mut pass));
+                if let Some((renderer, frame)) = &frame {
+                    renderer.draw(&mut pass, frame);
                 }
-                pass.set_pipeline(&self.lines);
-                for group in &groups {
-                    pass.set_bind_group(0, &group.lines, &[]);
-                    for draw in group.draws.iter().filter(|d| !d.line_vertices.is_empty()) {
-                        pass.draw(draw.line_vertices.clone(), draw.placed.clone());
-                    }
+                if options.lines {
+                    pass.set_pipeline(&self.lines);
+                    groups.iter().for_each(|group| group.draw_lines(&mut pass));
                 }
             }
             gpu.queue.submit([encoder.finish()]);
-            Ok(())
+            Ok(frame.map_or(0, |(_, frame)| frame.points))
         })?;
-        target.read(gpu, options.background)
+        Ok((target.read(gpu, options.background)?, points))
     }
 
     /// Buffers for the shapes that are placed, as many to a group as the limits allow.
@@ -165,7 +217,7 @@ impl Renderer {
         Ok(Group {
             vertices: plain_buffer(gpu, "the vertices of one part", &pending.vertices, BufferUsages::VERTEX)?,
             indices: plain_buffer(gpu, "the triangles of one part", &pending.triangles, BufferUsages::INDEX)?,
-            lines: group_of(gpu, &self.lines, &[(0, view), (1, placements), (2, &segments)]),
+            lines: bind_group(gpu, &self.lines, &[(0, view), (1, placements), (2, &segments)]),
             draws: pending.draws,
         })
     }
@@ -252,6 +304,7 @@ pub(crate) fn view_buffer(gpu: &Gpu, camera: &Camera, options: &RenderOptions) -
         eye: camera.distance.unwrap_or(0.0) as f32,
         line_color: [line, line, line * 1.15, 1.0],
         fill: [background[0], background[1], background[2], fill],
+        depth: [camera.pixel as f32, 0.0, 0.0, 0.0],
         section,
     };
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -287,7 +340,7 @@ pub(crate) fn placement(camera: &Camera, world: &DAffine3, color: Option<[f32; 4
 }
 
 /// A bind group of uniform and storage buffers, for a layout that the shader implies.
-fn group_of(gpu: &Gpu, pipeline: &RenderPipeline, buffers: &[(u32, &Buffer)]) -> BindGroup {
+pub(crate) fn bind_group(gpu: &Gpu, pipeline: &RenderPipeline, buffers: &[(u32, &Buffer)]) -> BindGroup {
     let entries: Vec<_> = buffers
         .iter()
         .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -302,12 +355,12 @@ fn group_of(gpu: &Gpu, pipeline: &RenderPipeline, buffers: &[(u32, &Buffer)]) ->
     })
 }
 
-/// A pipeline of a shader's `vertex` and `fragment` for triangles seen from both sides.
+/// A pipeline of two entry points of a shader for triangles seen from both sides.
 pub(crate) fn pipeline(
     gpu: &Gpu,
     shader: Shader,
+    [vertex, fragment]: [&str; 2],
     buffers: &[Option<wgpu::VertexBufferLayout>],
-    bias: wgpu::DepthBiasState,
 ) -> RenderPipeline {
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(shader.name),
@@ -318,7 +371,7 @@ pub(crate) fn pipeline(
         layout: None,
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some("vertex"),
+            entry_point: Some(vertex),
             compilation_options: Default::default(),
             buffers,
         },
@@ -328,12 +381,13 @@ pub(crate) fn pipeline(
             depth_write_enabled: Some(true),
             depth_compare: Some(wgpu::CompareFunction::LessEqual),
             stencil: wgpu::StencilState::default(),
-            bias,
+            // None: of slivers the slope is noise, and lines are moved nearer instead.
+            bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("fragment"),
+            entry_point: Some(fragment),
             compilation_options: Default::default(),
             targets: &[Some(COLOR.into())],
         }),
@@ -383,11 +437,7 @@ impl Target {
         })
     }
 
-    pub fn begin<'e>(
-        &self,
-        encoder: &'e mut wgpu::CommandEncoder,
-        background: Background,
-    ) -> wgpu::RenderPass<'e> {
+    pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, background: Background) -> RenderPass<'e> {
         let clear = match background {
             Background::Color([r, g, b]) => wgpu::Color { r, g, b, a: 1.0 },
             Background::Transparent => wgpu::Color::TRANSPARENT,

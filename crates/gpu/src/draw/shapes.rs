@@ -18,6 +18,8 @@ pub struct Vertex {
 pub struct Shape {
     /// What coordinates are relative to, in the part's units.
     pub middle: DVec3,
+    /// Nothing of the part is further from the middle.
+    pub radius: f64,
     pub vertices: Vec<Vertex>,
     pub triangles: Vec<[u32; 3]>,
     /// Ends of line segments, relative to `middle`.
@@ -40,31 +42,4 @@ pub struct Scenery {
     pub shapes: Vec<Shape>,
     /// Ordered by shape.
     pub placed: Vec<Placed>,
-}
-
-impl Scenery {
-    /// Points whose hull holds everything, in millimetres: the vertices of all placements, or, of large scenes, the
-    /// corners of their boxes.
-    pub fn outline(&self) -> Vec<DVec3> {
-        /// More vertices than this are stood for by boxes.
-        const MANY: usize = 2_000_000;
-        let count: usize = self.placed.iter().map(|p| self.shapes[p.shape].vertices.len()).sum();
-        let mut points = Vec::new();
-        for placed in &self.placed {
-            let shape = &self.shapes[placed.shape];
-            let at = |v: [f32; 3]| shape.middle + DVec3::from(v.map(f64::from));
-            let own = shape.vertices.iter().map(|v| at(v.position));
-            let own = own.chain(shape.segments.iter().flatten().map(|&p| at(p)));
-            if count <= MANY {
-                points.extend(own.map(|p| placed.world.transform_point3(p)));
-            } else if let Some((low, high)) = own.map(|p| (p, p)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-            {
-                points.extend((0..8).map(|corner| {
-                    let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-                    placed.world.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
-                }));
-            }
-        }
-        points
-    }
 }

@@ -7,6 +7,7 @@ struct View {
     eye: f32,                 // distance of the eye from the origin of the view, 0: infinitely far
     line_color: vec4<f32>,    // linear; opacity 0: the face's own
     fill: vec4<f32>,          // linear; opacity 1: in place of every colour, without light
+    depth: vec4<f32>,         // x: length that a pixel covers at the origin of the view
     section: vec4<f32>,       // of view space: what lies where dot(normal, p) > offset is cut away; 0: nothing
 }
 
@@ -38,14 +39,23 @@ fn is_cut(p: vec3<f32>) -> bool {
 }
 
 // A key light over the left shoulder, a weak one from below right, sky and ground; both sides of a face are lit.
-fn lit(color: vec3<f32>, normal: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
+fn lit(color: vec3<f32>, direction: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
     let e = towards_eye(p);
-    let side = select(-1.0, 1.0, dot(normal, e) >= 0.0);
-    let n = normal * side;
+    // On the very tip of a cone there is no normal.
+    let size = length(direction);
+    let normal = select(e, direction / size, size > 0.0);
+    let n = normal * select(-1.0, 1.0, dot(normal, e) >= 0.0);
     let key = normalize(vec3<f32>(-0.45, 0.65, 0.75));
     let fill = normalize(vec3<f32>(0.7, -0.25, 0.45));
     let sky = mix(0.20, 0.36, 0.5 + 0.5 * n.y);
     let diffuse = 0.62 * max(dot(n, key), 0.0) + 0.16 * max(dot(n, fill), 0.0);
     let shine = 0.10 * pow(max(dot(n, normalize(key + e)), 0.0), 40.0);
     return color * (sky + diffuse) + vec3<f32>(shine);
+}
+
+// The clip position of a point of view space with the depth of the one that lies so many pixels nearer to the eye.
+fn nearer(clip: vec4<f32>, p: vec3<f32>, pixels: f32) -> vec4<f32> {
+    let scale = select(1.0, (view.eye - p.z) / view.eye, view.eye > 0.0);
+    let moved = view.projection * vec4<f32>(p + towards_eye(p) * (pixels * view.depth.x * scale), 1.0);
+    return vec4<f32>(clip.xy, moved.z / moved.w * clip.w, clip.w);
 }

@@ -94,7 +94,15 @@ impl<R: Real> Inputs<'_, R> {
 fn normal<R: Real>(V3([ux, uy, uz]): V3<R>, V3([vx, vy, vz]): V3<R>) -> V3<R> {
     let n = V3([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]);
     let squared = n.0[0] * n.0[0] + n.0[1] * n.0[1] + n.0[2] * n.0[2];
-    if squared > R::zero() { n * (R::one() / squared.square_root()) } else { V3::default() }
+    let du = ux * ux + uy * uy + uz * uz;
+    let dv = vx * vx + vy * vy + vz * vz;
+    let longest = if du > dv { du } else { dv };
+    let degenerate = R::from_f64(R::DEGENERATE);
+    if squared > degenerate * longest * longest {
+        n * (R::one() / squared.square_root())
+    } else {
+        V3::default()
+    }
 }
 
 fn write3<R: Real>(out: &mut [R], at: usize, x: V3<R>) {

@@ -40,7 +40,7 @@ fn write_point(sample: Sample, h: real4) {
     write3(sample.at * 3u, h.xyz * (real(1) / h.w));
 }
 
-// Point, first derivatives, unit normal and, where `planes` is 3, second derivatives.
+// Point, first derivatives, unit normal (0 where the derivatives are parallel) and, where `planes` is 3, second derivatives.
 fn write_jet(sample: Sample, jet: Jet) {
     let by_w = real(1) / jet.h00.w;
     let p = jet.h00.xyz * by_w;
@@ -50,7 +50,9 @@ fn write_jet(sample: Sample, jet: Jet) {
     let n = real3(du.y * dv.z - du.z * dv.y, du.z * dv.x - du.x * dv.z, du.x * dv.y - du.y * dv.x);
     let squared = n.x * n.x + n.y * n.y + n.z * n.z;
     var normal = real3(real(0), real(0), real(0));
-    if squared > real(0) {
+    let longest = max(du.x * du.x + du.y * du.y + du.z * du.z, dv.x * dv.x + dv.y * dv.y + dv.z * dv.z);
+    // At a pole what should be 0 is rounding, and a direction made of that is none.
+    if squared > DEGENERATE * longest * longest {
         normal = n * (real(1) / sqrt(squared));
     }
     let inverse_u = windows[spans[rows[sample.row_u].span].window];

@@ -1,0 +1,122 @@
+// Exact faces: grids of points that a kernel has left in a buffer, drawn from there and trimmed at every sample.
+
+struct Face {
+    offset: vec3<f32>,   // local coordinates to the part's: offset + size * local
+    size: f32,
+    color: vec4<f32>,    // linear
+    first: u32,          // number of its first point in the buffer
+    height: u32,         // points along v
+    row_u: u32,          // its columns' places in the unit square
+    row_v: u32,
+    lists: u32,          // its trimming
+    bands: u32,
+    turn: f32,           // -1: the outside is against the surface's normal
+    border: u32,         // number of its first border point
+}
+
+@group(0) @binding(2) var<storage, read> faces: array<Face>;
+@group(0) @binding(3) var<storage, read> points: array<f32>;
+@group(0) @binding(4) var<storage, read> places: array<f32>;
+
+var<immediate> face_index: u32;
+
+struct ExactOut {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) p: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    // Where the sample itself lies, so that the border is decided at every sample of a pixel.
+    @location(2) @interpolate(perspective, sample) place: vec2<f32>,
+    @location(3) @interpolate(flat) color: vec3<f32>,
+    @location(4) @interpolate(flat) trim: vec2<u32>,
+}
+
+fn color_of(face: Face, placement: Placement) -> vec3<f32> {
+    return select(face.color.rgb, placement.color.rgb, placement.color.a > 0.0);
+}
+
+fn point_of(face: Face, number: u32) -> vec3<f32> {
+    let at = 12u * number;
+    return face.offset + face.size * vec3<f32>(points[at], points[at + 1u], points[at + 2u]);
+}
+
+fn normal_of(face: Face, number: u32) -> vec3<f32> {
+    let at = 12u * number + 9u;
+    return face.turn * vec3<f32>(points[at], points[at + 1u], points[at + 2u]);
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> ExactOut {
+    let face = faces[face_index];
+    let placement = placements[instance];
+    let cell = index / 6u;
+    let corner = index % 6u;
+    let cells_v = face.height - 1u;
+    let i = cell / cells_v + select(0u, 1u, corner == 1u || corner == 3u || corner == 4u);
+    let j = cell % cells_v + select(0u, 1u, corner == 2u || corner == 4u || corner == 5u);
+    let number = face.first + i * face.height + j;
+    let p = placement.view * vec4<f32>(point_of(face, number), 1.0);
+    var out: ExactOut;
+    out.clip = view.projection * p;
+    out.p = p.xyz;
+    out.normal = placement.normal * normal_of(face, number);
+    out.place = vec2<f32>(places[face.row_u + i], places[face.row_v + j]);
+    out.color = color_of(face, placement);
+    out.trim = vec2<u32>(face.lists, face.bands);
+    return out;
+}
+
+@fragment
+fn fragment(in: ExactOut) -> @location(0) vec4<f32> {
+    if is_cut(in.p) || !inside(in.trim.x, in.trim.y, in.place) {
+        discard;
+    }
+    if view.fill.a > 0.0 {
+        return vec4<f32>(view.fill.rgb, 1.0);
+    }
+    return vec4<f32>(lit(in.color, in.normal, in.p), 1.0);
+}
+
+struct BorderOut {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) p: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) @interpolate(flat) color: vec3<f32>,
+}
+
+// A strip along the border of a face, as wide as neighbours that are sampled differently may stand apart, and a pixel
+// behind both: it is seen in cracks alone.
+@vertex
+fn border_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> BorderOut {
+    let face = faces[face_index];
+    let placement = placements[instance];
+    let number = face.border + 2u * (index / 6u);
+    let corner = index % 6u;
+    let at_b = corner == 1u || corner == 2u || corner == 4u;
+    let side = select(-1.0, 1.0, corner == 2u || corner == 4u || corner == 5u);
+    let a = placement.view * vec4<f32>(point_of(face, number), 1.0);
+    let b = placement.view * vec4<f32>(point_of(face, number + 1u), 1.0);
+    let ca = view.projection * a;
+    let cb = view.projection * b;
+    let along = (cb.xy / cb.w - ca.xy / ca.w) * view.viewport;
+    let direction = along / max(length(along), 1e-6);
+    let shift = vec2<f32>(-direction.y, direction.x) * side;
+    var clip = select(ca, cb, at_b);
+    clip = vec4<f32>(clip.xy + shift / view.viewport * clip.w, clip.zw);
+    var out: BorderOut;
+    out.p = select(a.xyz, b.xyz, at_b);
+    out.clip = nearer(clip, out.p, -1.0);
+    out.normal = placement.normal * normal_of(face, number + select(0u, 1u, at_b));
+    out.color = color_of(face, placement);
+    return out;
+}
+
+@fragment
+fn border_fragment(in: BorderOut) -> @location(0) vec4<f32> {
+    if is_cut(in.p) {
+        discard;
+    }
+    if view.fill.a > 0.0 {
+        return vec4<f32>(view.fill.rgb, 1.0);
+    }
+    return vec4<f32>(lit(in.color, in.normal, in.p), 1.0);
+}

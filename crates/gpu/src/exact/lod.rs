@@ -1,0 +1,55 @@
+//! How many samples a view needs: continuously, and in each direction by itself.
+//!
+//! A cell of h × k in the parameters, drawn as two triangles, departs from the surface by at most
+//! (h² |S_uu| + 2 h k |S_uv| + k² |S_vv|) / 8. Each direction gets half of what is allowed, after the mixed term has
+//! been shared between the squares: 2 h k m ≤ m (r h² + k²/r) with r the ratio of the two.
+
+use super::ExactFace;
+
+/// Points of one face at most; a view that asks for more sees the difference only where the face fills it many times.
+const MOST: f64 = 2048.0;
+
+/// The face's parameters along u and v, native, for an error in the part's units. Knot lines across which the surface
+/// has a kink are among them.
+pub(crate) fn grid(face: &ExactFace, error: f64) -> [Vec<f64>; 2] {
+    let [uu, uv, vv] = face.bends;
+    let ratio = if uu > 0.0 && vv > 0.0 { (uu / vv).sqrt() } else { 1.0 };
+    let needs = |bend: f64, length: f64| (length * (bend / (4.0 * error)).sqrt()).ceil().clamp(1.0, MOST);
+    let size = face.uv.size();
+    let mut steps = [needs(uu + uv * ratio, size.x), needs(vv + uv / ratio, size.y)];
+    // One head of samples is never cut between buffers.
+    while steps[0] * steps[1] > 400_000.0 {
+        let larger = usize::from(steps[1] > steps[0]);
+        steps[larger] = (0.5 * steps[larger]).ceil();
+    }
+    [0, 1].map(|axis| spread(face.uv.min[axis], face.uv.max[axis], &face.kinks[axis], steps[axis]))
+}
+
+/// `steps` equal steps from `start` to `end`, rounded up in each of the parts that `kinks` cut it into.
+fn spread(start: f64, end: f64, kinks: &[f64], steps: f64) -> Vec<f64> {
+    let mut cuts = vec![start];
+    cuts.extend(kinks.iter().copied().filter(|k| *k > start && *k < end));
+    cuts.push(end);
+    let mut found = vec![start];
+    for pair in cuts.windows(2) {
+        let count = (steps * (pair[1] - pair[0]) / (end - start) - 1e-9).ceil().max(1.0) as usize;
+        found.extend((1..=count).map(|k| {
+            if k == count { pair[1] } else { pair[0] + (pair[1] - pair[0]) * (k as f64 / count as f64) }
+        }));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinks_are_samples() {
+        let found = spread(0.0, 10.0, &[3.0, 12.0], 4.0);
+        assert_eq!(found[0], 0.0);
+        assert_eq!(*found.last().unwrap(), 10.0);
+        assert!(found.contains(&3.0) && found.windows(2).all(|w| w[0] < w[1] && w[1] - w[0] <= 2.5 + 1e-9));
+        assert_eq!(spread(0.0, 1.0, &[], 1.0), [0.0, 1.0]);
+    }
+}
