@@ -9,6 +9,8 @@ use chordal_gpu::{
 use chordal_nurbs::{DVec2, DVec3, NurbsCurve3, NurbsSurface};
 use std::time::{Duration, Instant};
 
+/// Control points along each side of the paper's surface.
+const PAPER: usize = 12;
 /// No measurement goes on for longer.
 const PATIENCE: Duration = Duration::from_millis(1500);
 
@@ -33,9 +35,8 @@ fn run() -> Result<(), GpuError> {
     curves(&gpu)
 }
 
-/// A rational bicubic surface of 12 × 12 control points, as in the paper.
-fn surface(seed: usize) -> NurbsSurface {
-    let n = 12;
+/// A rational bicubic surface of n × n control points.
+fn surface(seed: usize, n: usize) -> NurbsSurface {
     let mut knots = vec![0.0; 4];
     knots.extend((1..n - 3).map(|k| k as f64 / (n - 3) as f64));
     knots.extend([1.0; 4]);
@@ -48,7 +49,7 @@ fn surface(seed: usize) -> NurbsSurface {
 /// One core of the host against what binds it.
 fn host() -> Result<(), GpuError> {
     let mut set = SurfaceSet::<f64>::with_bezier();
-    set.push_surface(&surface(1));
+    set.push_surface(&surface(1, PAPER));
     let spread: Vec<f64> = (0..1024).map(|k| f64::from(k) / 1023.0).collect();
     let mut best = f64::INFINITY;
     let mut sum = 0.0;
@@ -146,7 +147,7 @@ fn single(gpu: &Gpu) -> Result<(), GpuError> {
         let mut cases = Vec::new();
         for side in [8, 16, 32, 64, 128, 256, 512, 1024] {
             let mut set = SurfaceSet::with_bezier();
-            set.push_surface(&surface(1));
+            set.push_surface(&surface(1, PAPER));
             let samples = Samples::new(&set, &[Request::even_grid(&set, 0, side, side)])?;
             cases.push((format!("{side}²"), set, samples));
         }
@@ -158,19 +159,19 @@ fn single(gpu: &Gpu) -> Result<(), GpuError> {
 fn batched(gpu: &Gpu) -> Result<(), GpuError> {
     let mut set = SurfaceSet::with_bezier();
     for seed in 0..10_000 {
-        set.push_surface(&surface(seed));
+        set.push_surface(&surface(seed, 4));
     }
     let mut cases = Vec::new();
     for side in [8, 16, 32] {
         let requests: Vec<_> = (0..set.len()).map(|i| Request::even_grid(&set, i, side, side)).collect();
-        cases.push((format!("10,000 of {side}²"), set.clone(), Samples::new(&set, &requests)?));
+        cases.push((format!("{side}² each"), set.clone(), Samples::new(&set, &requests)?));
     }
-    table(gpu, "All surfaces in one dispatch, points", &cases, Wanted::Points)
+    table(gpu, "10,000 patches of 4 × 4 control points in one dispatch, points", &cases, Wanted::Points)
 }
 
 fn scattered(gpu: &Gpu) -> Result<(), GpuError> {
     let mut set = SurfaceSet::with_bezier();
-    set.push_surface(&surface(1));
+    set.push_surface(&surface(1, PAPER));
     let mut state = 1_u64;
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

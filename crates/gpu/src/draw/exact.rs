@@ -37,7 +37,8 @@ struct FaceData {
 /// The pipelines of exact pictures.
 #[derive(Debug)]
 pub struct ExactRenderer {
-    evaluator: Evaluator<f32>,
+    /// The fastest that was measured, and the one for models whose Bézier nets exceed a binding.
+    evaluators: [Evaluator<f32>; 2],
     faces: RenderPipeline,
     borders: RenderPipeline,
 }
@@ -72,12 +73,15 @@ impl ExactRenderer {
     /// # Errors
     /// What [`Gpu::watched`] gives.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let evaluator = Evaluator::new(gpu, Variant::Direct, Search::Host)?;
+        let evaluators = [
+            Evaluator::new(gpu, Variant::Bernstein, Search::Host)?,
+            Evaluator::new(gpu, Variant::Direct, Search::Host)?,
+        ];
         gpu.watched("compiling shaders", || {
             let entries = ["vertex", "fragment"];
             let border = ["border_vertex", "border_fragment"];
             Ok(Self {
-                evaluator,
+                evaluators,
                 faces: pipeline(gpu, shaders::EXACT, entries, &[]),
                 borders: pipeline(gpu, shaders::EXACT, border, &[]),
             })
@@ -94,11 +98,17 @@ impl ExactRenderer {
         view: &Buffer,
         placements: &Buffer,
     ) -> Result<ExactFrame, GpuError> {
-        let plan = FramePlan::new(model, scenery, camera);
+        let mut plan = FramePlan::new(model, scenery, camera, SurfaceSet::with_bezier());
+        let [by_nets, by_knots] = &self.evaluators;
+        let mut evaluator = by_nets;
+        if plan.set.bezier_bytes() > gpu.binding_limit() {
+            plan = FramePlan::new(model, scenery, camera, SurfaceSet::new());
+            evaluator = by_knots;
+        }
         let samples = Samples::new(&plan.set, &plan.requests)?;
         let on_device = OnDevice::upload(gpu, &plan.set)?;
-        let evaluation = self.evaluator.prepare(gpu, &on_device, &plan.set, &samples, Wanted::First)?;
-        self.evaluator.run(gpu, &evaluation)?;
+        let evaluation = evaluator.prepare(gpu, &on_device, &plan.set, &samples, Wanted::First)?;
+        evaluator.run(gpu, &evaluation)?;
         let (faces, draws) = plan.placed_in(&samples, &evaluation);
         let faces = storage(gpu, "the faces", &faces)?;
         let places = storage(gpu, "the parameters of all grids", &plan.places)?;
@@ -147,8 +157,8 @@ struct FramePlan {
 }
 
 impl FramePlan {
-    fn new(model: &ExactModel, scenery: &Scenery, camera: &Camera) -> Self {
-        let mut plan = Self::default();
+    fn new(model: &ExactModel, scenery: &Scenery, camera: &Camera, set: SurfaceSet<f32>) -> Self {
+        let mut plan = Self { set, ..Self::default() };
         let mut first = 0;
         for of_shape in scenery.placed.chunk_by(|a, b| a.shape == b.shape) {
             let placed = first..first + of_shape.len() as u32;
