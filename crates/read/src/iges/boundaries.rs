@@ -4,7 +4,7 @@ use super::curves::{Segment, Segment2, segments, segments2};
 use super::document::{Doc, Ix, Res};
 use super::surfaces::Patch;
 use chordal_brep::Pcurve;
-use chordal_nurbs::{Curve2, DAffine3, DVec2, DVec3, Range, SurfaceInverter};
+use chordal_nurbs::{Curve2, DAffine3, DVec2, DVec3, Range, SurfaceInverter, UvBox};
 use std::sync::Arc;
 
 /// A piece of a boundary in space, run backwards unless `forward`.
@@ -280,6 +280,25 @@ impl Boundary {
         let n = polygon.len();
         let area: f64 = (0..n).map(|i| (polygon[i] - origin).perp_dot(polygon[(i + 1) % n] - origin)).sum();
         (area != 0.0).then_some(area > 0.0)
+    }
+
+    /// True where the curves in parameter space, closed by a straight line where they are open, run counter-clockwise;
+    /// none where they wind round a closed surface.
+    pub(crate) fn parameter_turn(&self, patch: &Patch) -> Option<bool> {
+        const STEPS: u32 = 16;
+        let at = |p: &ParameterUse, k: u32| p.at(f64::from(k) / f64::from(STEPS));
+        let polygon: Vec<DVec2> =
+            self.parameters.iter().flat_map(|p| (0..STEPS).map(move |k| at(p, k))).collect();
+        let (first, last) = (*polygon.first()?, self.parameters.last()?.at(1.0));
+        let turns = |axis: usize| {
+            let period = patch.surface.periods()[axis];
+            period.map_or(0.0, |period| ((last - first)[axis] / period).abs())
+        };
+        let winds = [0, 1].iter().any(|&axis| turns(axis) > 1.0 - LOOSE);
+        let extent = UvBox::from_points(polygon.iter().copied()).size();
+        let n = polygon.len();
+        let area: f64 = (0..n).map(|i| (polygon[i] - first).perp_dot(polygon[(i + 1) % n] - first)).sum();
+        (!winds && area.abs() > LOOSE * extent.x * extent.y).then_some(area > 0.0)
     }
 
     /// The farthest that the pieces in space are from the surface.

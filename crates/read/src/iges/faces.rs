@@ -97,10 +97,10 @@ impl Builder<'_, '_> {
             && all.iter().all(|b| !b.model.is_empty() && b.model_off(&simple) <= slack(b))
         {
             let same = simple.reversed == patch.reversed;
-            let turns = all.iter().map(|b| b.turn(&patch).map(|ccw| ccw == same)).collect();
+            let turns = all.iter().map(|b| known_turn(b, &patch, resolution).map(|ccw| ccw == same)).collect();
             return self.cut_in_space(ix, &simple, all, turns, has_outer, look);
         }
-        let turns: Vec<Option<bool>> = all.iter().map(|b| b.turn(&patch)).collect();
+        let turns: Vec<Option<bool>> = all.iter().map(|b| known_turn(b, &patch, resolution)).collect();
         if all.iter_mut().all(|boundary| in_space(boundary, &patch, resolution)) {
             return self.cut_in_space(ix, &patch, all, turns, has_outer, look);
         }
@@ -239,6 +239,12 @@ fn in_space(boundary: &mut Boundary, patch: &Patch, resolution: f64) -> bool {
     }
     let strict = if boundary.preference == Preference::Parameters { 1.0 } else { 10.0 };
     boundary.off_surface(patch) <= (ON_SURFACE * boundary.size()).max(strict * resolution)
+}
+
+/// Which way the pieces in space run in the parameters of the patch. Where the file's two descriptions of the boundary
+/// are not at one place, their points say nothing of each other; that both run the same way is then all that is left.
+fn known_turn(boundary: &Boundary, patch: &Patch, resolution: f64) -> Option<bool> {
+    if boundary.parameters_fit(patch, resolution) { boundary.turn(patch) } else { boundary.parameter_turn(patch) }
 }
 
 fn rectangle(uv: UvBox, look: &Look) -> TrimLoop {
