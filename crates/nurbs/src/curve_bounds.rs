@@ -112,6 +112,12 @@ impl<V: Vector> BezierCurve<V> {
     }
 }
 
+/// Upper bound of the distance from any point of the curve to a segment.
+pub(crate) fn hull_to_chord<V: Vector>(piece: &BezierCurve<V>, (a, b): (V, V)) -> f64 {
+    let local = piece.mapped(|p| p - a);
+    distance_to_segment(&local, (a - a, b - a)) + rounding(piece.degree()) * (a.norm() + size([&local]))
+}
+
 /// The largest of some non-negative values; infinity where one is not a number, so that no overflow passes as proof.
 pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| if value.is_nan() { f64::INFINITY } else { most.max(value) })

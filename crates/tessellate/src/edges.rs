@@ -417,7 +417,28 @@ struct Track {
 /// A probe is followed from the last one where the surface passes it within this share of the way.
 const ON_TRACK: f64 = 0.1;
 
+/// Places along an edge at which its parameter curve is compared with it.
+const PACE_CHECKS: u32 = 8;
+
 impl EdgeUse<'_, '_> {
+    /// Without the parameter curve where that does not run at the edge's own pace, though both may be one line: equal
+    /// shares of the two are then different places.
+    pub fn paced(self, edge: &Edge, tolerance: f64) -> Self {
+        let (Some(curve), Some(_), false) =
+            (edge.curve.as_deref(), self.pcurve, self.surface.is_elementary())
+        else {
+            return self;
+        };
+        let strays = (1..PACE_CHECKS).any(|i| {
+            let t = edge.range.start + edge.range.length() * f64::from(i) / f64::from(PACE_CHECKS);
+            let p = curve.point(t);
+            let beside = self.surface.point(self.parameters(p, t, edge.range, None).uv).distance(p);
+            let nearest = || self.surface.point(self.surface.invert_from(p, None).uv).distance(p);
+            beside > tolerance && nearest() < 0.5 * beside
+        });
+        Self { pcurve: self.pcurve.filter(|_| !strays), ..self }
+    }
+
     /// Where on the face the point at `t` lies: by the file, where it says so, else the nearest point's parameters.
     pub fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<Near>) -> Near {
         let from_file = self.pcurve.filter(|_| !self.surface.is_elementary()).map(|p| {

@@ -170,15 +170,15 @@ impl Job<'_> {
         if info.uses.is_empty() {
             return EdgeSamples::default();
         }
+        let edge = &self.part.edges[index];
         let uses: Vec<EdgeUse<'_, '_>> = info
             .uses
             .iter()
             .filter_map(|&(f, pcurve)| {
                 let surface = self.surfaces[f].as_ref()?;
-                Some(EdgeUse { surface, pcurve, reach: reach[f] })
+                Some(EdgeUse { surface, pcurve, reach: reach[f] }.paced(edge, self.limits.tolerance))
             })
             .collect();
-        let edge = &self.part.edges[index];
         let sampled = catch_unwind(AssertUnwindSafe(|| {
             EdgeSamples::new(self.part, edge, &uses, &self.limits, self.options.edge_method, least)
         }));

@@ -1,9 +1,43 @@
-//! Bounds of derivatives of curves that are given in the parameter space of a surface.
+//! Bounds of curves that are given in the parameter space of a surface.
 //!
-//! The chain rule, with bounds of the surface's derivatives over the box that the parameter curve keeps to.
+//! - *Chord.* On a spline surface the curve is composed with the patches that it runs over, exactly, and the control points
+//!   of what comes out are measured ([`crate::NurbsSurface::lift`]).
+//! - *Derivatives*, and everything on other surfaces: the chain rule, with bounds of the surface's derivatives over the box
+//!   that the parameter curve keeps to.
 
-use crate::{Curve, Curve2, Range, Surface, SurfaceBounds, UvBox};
+use crate::curve_bounds::{hull_to_chord, largest};
+use crate::{Curve, Curve2, LiftOptions, LiftedPiece, Range, Surface, SurfaceBounds, UvBox};
 use glam::DVec2;
+
+/// Exact curves of higher degrees than this cost more than the chain rule.
+const EXACT_DEGREE: usize = 40;
+
+/// Upper bound of the two-sided distance between the curve over `range` and the chord between its ends; `None` where the
+/// surface is no spline, or the curve has no exact form on it.
+pub(super) fn exact_chord_error(surface: &Surface, curve: &Curve2, range: Range) -> Option<f64> {
+    let Surface::Nurbs(spline) = surface else { return None };
+    let plane = curve.to_nurbs(range).ok()?;
+    let [p, q] = spline.degree();
+    if plane.degree() * (p + q) > EXACT_DEGREE {
+        return None;
+    }
+    let mut pieces: Vec<LiftedPiece> = Vec::new();
+    for (_, piece) in plane.bezier_pieces() {
+        // Beyond the domain closed surfaces begin anew, and the outermost patches do not.
+        let domain = spline.domain();
+        let slack = domain.size() * OUTSIDE;
+        let inside = |p: &DVec2| domain.inflated(slack).contains(*p);
+        if !piece.points.iter().all(inside) {
+            return None;
+        }
+        pieces.extend(spline.lift(&piece, LiftOptions::default()).ok()?);
+    }
+    let chord = (surface.point(curve.point(range.start)), surface.point(curve.point(range.end)));
+    Some(largest(pieces.iter().map(|piece| hull_to_chord(&piece.xyz, chord) + piece.error)))
+}
+
+/// Parameters may leave the domain by this share of it: rounding.
+const OUTSIDE: f64 = 1e-13;
 
 /// Norms of Su, Sv, Suu, Suv, Svv over a box.
 struct Norms {

@@ -73,6 +73,11 @@ impl Curve {
                     })
                 })
             }
+            Curve::OnSurface { surface, curve }
+                if let Some(error) = super::on_surface::exact_chord_error(surface, curve, range) =>
+            {
+                error
+            }
             Curve::Offset { .. } | Curve::OnSurface { .. } => {
                 let mut stops = self.all_breaks(range);
                 stops.extend((1..PIECES).map(|i| range.start + range.length() * i as f64 / PIECES as f64));

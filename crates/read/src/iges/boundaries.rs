@@ -328,7 +328,7 @@ impl Boundary {
     }
 }
 
-fn to_chord(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
+pub(super) fn to_chord(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
     let d = b - a;
     let length = d.length_squared();
     let t = if length > 0.0 { ((p - a).dot(d) / length).clamp(0.0, 1.0) } else { 0.0 };

@@ -8,6 +8,7 @@ use super::boundaries::{self, Boundary, LOOSE, Preference};
 use super::builder::Builder;
 use super::document::{Ix, Res};
 use super::matrix;
+use super::own_border::stands_for_border;
 use super::simpler::elementary;
 use super::surfaces::{Patch, surface};
 use crate::trimmed::{self, Look, Piece, Role, TrimLoop};
@@ -92,12 +93,18 @@ impl Builder<'_, '_> {
         let resolution = self.resolution();
         let slack = |boundary: &Boundary| (LOOSE * boundary.size()).max(4.0 * resolution);
         let mut all = self.boundaries(&list, by, &patch)?;
+        if has_outer && all.len() == 1 && stands_for_border(&all[0], &patch, resolution) {
+            self.doc
+                .warn(all[0].ix, "it does not close and runs along the border of its surface; that is taken");
+            return self.whole(ix, &patch, look);
+        }
         if has_outer
             && let Some(simple) = elementary(&patch)
             && all.iter().all(|b| !b.model.is_empty() && b.model_off(&simple) <= slack(b))
         {
             let same = simple.reversed == patch.reversed;
-            let turns = all.iter().map(|b| known_turn(b, &patch, resolution).map(|ccw| ccw == same)).collect();
+            let turns =
+                all.iter().map(|b| known_turn(b, &patch, resolution).map(|ccw| ccw == same)).collect();
             return self.cut_in_space(ix, &simple, all, turns, has_outer, look);
         }
         let turns: Vec<Option<bool>> = all.iter().map(|b| known_turn(b, &patch, resolution)).collect();
@@ -244,7 +251,11 @@ fn in_space(boundary: &mut Boundary, patch: &Patch, resolution: f64) -> bool {
 /// Which way the pieces in space run in the parameters of the patch. Where the file's two descriptions of the boundary
 /// are not at one place, their points say nothing of each other; that both run the same way is then all that is left.
 fn known_turn(boundary: &Boundary, patch: &Patch, resolution: f64) -> Option<bool> {
-    if boundary.parameters_fit(patch, resolution) { boundary.turn(patch) } else { boundary.parameter_turn(patch) }
+    if boundary.parameters_fit(patch, resolution) {
+        boundary.turn(patch)
+    } else {
+        boundary.parameter_turn(patch)
+    }
 }
 
 fn rectangle(uv: UvBox, look: &Look) -> TrimLoop {

@@ -17,6 +17,7 @@ mod lines;
 mod looks;
 mod loops;
 mod matrix;
+mod own_border;
 mod parameters;
 mod ruled;
 mod simpler;
