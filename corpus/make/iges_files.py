@@ -149,6 +149,23 @@ def half_sphere() -> str:
     return g.text()
 
 
+@good("sphere_turned", "a quarter of a sphere whose boundary in parameters is that of another quarter", faces=1, closed=False)
+def sphere_turned() -> str:
+    g = Iges()
+    axis = g.line((0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    arc = g.add(100, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, -3.0, status="00010000")
+    s = g.add(120, axis, arc, 0.0, 2 * math.pi, status="00010000")
+    q, h = 0.5 * math.pi, math.pi
+    parameters = g.chain([(q, 0.0), (h, 0.0), (h, h), (q, h)], UV)
+    # In space it is turned by half a turn about z.
+    down = g.add(100, 0.0, 0.0, 0.0, 0.0, -3.0, 3.0, 0.0, status="00010000")
+    tilted = g.add(124, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, 0.0, status="00010000")
+    around = g.add(100, 0.0, 0.0, 0.0, 3.0, 0.0, -3.0, 0.0, status="00010000", matrix=tilted)
+    up = g.add(100, 0.0, 0.0, 0.0, -3.0, 0.0, 0.0, -3.0, status="00010000")
+    g.trimmed(s, g.boundary(s, parameters, g.add(102, 3, down, around, up, status="00010000"), 1))
+    return g.text()
+
+
 @good("parameters_only", "a tabulated cylinder (122) trimmed in its parameters 0..1 alone", faces=1, closed=False)
 def parameters_only() -> str:
     g = Iges()
@@ -214,6 +231,17 @@ def looks() -> str:
     second = plate(g, color=3)
     name = g.add(406, 1, "two plates", form=15, status="00010000")
     g.add(402, 2, first, second, 0, 1, name, form=7)
+    return g.text()
+
+
+@bad("three_sides", "an outer boundary in space that leaves out one side of its patch and cuts its corners", exit="0",
+     phrase="runs along the border of its surface")
+def three_sides() -> str:
+    g = Iges()
+    s = g.bilinear((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), (0.0, 10.0, 0.0), (10.0, 10.0, 2.0), status="00010000")
+    path = [(10.0, 0.0, 0.0), (10.0, 9.9, 1.98), (9.9, 10.0, 1.98), (0.1, 10.0, 0.02), (0.0, 9.9, 0.0), (0.0, 0.0, 0.0)]
+    lines = [g.line(a, b) for a, b in zip(path, path[1:])]
+    g.trimmed(s, g.boundary(s, 0, g.add(102, len(lines), *lines, status="00010000"), 2))
     return g.text()
 
 

@@ -115,7 +115,8 @@ impl<V: Vector> BezierCurve<V> {
 /// Upper bound of the distance from any point of the curve to a segment.
 pub(crate) fn hull_to_chord<V: Vector>(piece: &BezierCurve<V>, (a, b): (V, V)) -> f64 {
     let local = piece.mapped(|p| p - a);
-    distance_to_segment(&local, (a - a, b - a)) + rounding(piece.degree()) * (a.norm() + size([&local]))
+    distance_to_segment(&local, (V::default(), b - a))
+        + rounding(piece.degree()) * (a.norm() + size([&local]))
 }
 
 /// The largest of some non-negative values; infinity where one is not a number, so that no overflow passes as proof.

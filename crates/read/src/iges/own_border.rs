@@ -13,14 +13,20 @@ const STEPS: u32 = 64;
 /// The boundary runs along this share of the border at least.
 const MOST: f64 = 0.5;
 
-/// True where a boundary in space alone does not close, and runs along more than half of the border of a spline patch.
+/// Curves farther off their surface than so many times the resolution are approximations.
+const STRAYS: f64 = 10.0;
+
+/// True where a boundary in space alone strays from its surface, does not close, and runs along most of the border of a
+/// spline patch.
 pub(crate) fn stands_for_border(boundary: &Boundary, patch: &Patch, resolution: f64) -> bool {
     let (true, Surface::Nurbs(surface)) = (boundary.parameters.is_empty(), &patch.surface) else {
         return false;
     };
     let (Some(first), Some(last)) = (boundary.model.first(), boundary.model.last()) else { return false };
     let slack = (LOOSE * boundary.size()).max(4.0 * resolution);
-    if last.end().distance(first.start()) <= slack {
+    let closes = last.end().distance(first.start()) <= slack;
+    // What lies on the surface is good as it is: the rest follows the surface.
+    if closes || boundary.model_off(patch) <= STRAYS * resolution {
         return false;
     }
     let domain = patch.bounds.unwrap_or_else(|| surface.domain());

@@ -33,7 +33,7 @@ fn chord_errors_hold_and_are_near_the_truth() {
             // Corners lie between samples.
             "line" | "circle" | "polyline" => 1.1,
             "parabola" | "hyperbola" => 2.0,
-            "offset" | "on cylinder" | "on nurbs" | "ellipse" => 20.0,
+            "offset" | "on cylinder" | "ellipse" => 20.0,
             _ => 10.0,
         };
         assert!(worst < limit, "{name}: {worst}");
@@ -44,7 +44,7 @@ fn chord_errors_hold_and_are_near_the_truth() {
 #[test]
 fn short_chords_are_bounded_tightly() {
     for (name, curve, range) in zoo::curves() {
-        if ["line", "polyline", "on nurbs", "composite"].contains(&name) {
+        if ["line", "polyline", "composite"].contains(&name) {
             continue;
         }
         let limit = if ["offset", "on cylinder"].contains(&name) { 4.0 } else { 1.3 };
