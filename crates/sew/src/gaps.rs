@@ -13,11 +13,11 @@ use chordal_nurbs::Box3;
 use rayon::prelude::*;
 
 /// No joint of a part is wider than this share of its diagonal.
-const LARGEST_GAP: f64 = 2e-3;
+pub(crate) const LARGEST_GAP: f64 = 2e-3;
 /// What coordinates are good for where the file says nothing, as a share of the diagonal: files with six digits.
-const RESOLUTION: f64 = 1e-6;
+pub(crate) const RESOLUTION: f64 = 1e-6;
 /// A valley is clear where its upper end is so many times its lower one.
-const CLEAR: f64 = 4.0;
+pub(crate) const CLEAR: f64 = 4.0;
 /// The tolerance lies so many times above the largest gap to be sewn: ends of edges are off by more than their middles.
 const MARGIN: f64 = 3.0;
 
@@ -108,7 +108,11 @@ pub(crate) fn nearest_other(borders: &Borders, border: usize, t: f64) -> Option<
 
 /// The tolerance from sorted gaps.
 pub(crate) fn choose(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64) -> AutoTolerance {
-    let cap = LARGEST_GAP * diagonal;
+    choose_below(gaps, uncertainty, diagonal, LARGEST_GAP * diagonal)
+}
+
+/// The same where gaps of more than `cap` are no joints.
+pub(crate) fn choose_below(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64, cap: f64) -> AutoTolerance {
     let resolution = uncertainty.filter(|u| *u > 0.0 && u.is_finite()).unwrap_or(RESOLUTION * diagonal);
     let resolution = resolution.min(cap / CLEAR).max(16.0 * f64::EPSILON * diagonal);
     let mut values = vec![resolution];

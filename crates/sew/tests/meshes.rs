@@ -65,6 +65,27 @@ fn volume(mesh: &SewnMesh) -> f64 {
         .sum()
 }
 
+/// A drum: its wall and its two ends are meshes of their own, with other vertices along the circles that they share.
+#[test]
+fn auto_tells_the_chords_of_a_curve_from_its_openings() {
+    let mut soup = Soup::default();
+    let turn = std::f64::consts::TAU;
+    soup.grid(40, 3, false, |s, t| DVec3::new((turn * s).cos(), (turn * s).sin(), 2.0 * t));
+    for (z, n) in [(0.0, 33_u32), (2.0, 47)] {
+        let first = soup.positions.len() as u32;
+        soup.positions.push(DVec3::Z * z);
+        let rim = (0..n).map(|i| turn * (f64::from(i) + 0.3) / f64::from(n));
+        soup.positions.extend(rim.map(|a| DVec3::new(a.cos(), a.sin(), z)));
+        soup.triangles.extend((0..n).map(|i| [first, first + 1 + i, first + 1 + (i + 1) % n]));
+    }
+    let (mesh, report) = sew_mesh(&soup.positions, &soup.triangles, SewTolerance::Auto, Some(1e-9));
+    assert_eq!((report.open_after, report.closed_shells), (0, 1), "{report:?}");
+    let sag = 1.0 - (0.5 * turn / 33.0).cos();
+    assert!(report.tolerance >= sag && report.tolerance < 8.0 * sag, "{report:?}");
+    assert!(report.largest_move <= report.tolerance);
+    assert!((volume(&mesh).abs() / turn - 1.0).abs() < 0.02, "{}", volume(&mesh));
+}
+
 #[test]
 fn a_ball_of_six_meshes_of_different_fineness_closes() {
     let mut soup = Soup::default();

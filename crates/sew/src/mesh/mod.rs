@@ -20,7 +20,8 @@ mod join;
 mod shells;
 mod track;
 
-use crate::gaps::{AutoTolerance, choose};
+use crate::foot::segment_distance;
+use crate::gaps::{AutoTolerance, CLEAR, LARGEST_GAP, RESOLUTION, choose_below};
 use crate::run::SewTolerance;
 use boundary::Boundaries;
 use chordal_nurbs::Box3;
@@ -120,13 +121,45 @@ pub fn sew_mesh(
     (mesh, report)
 }
 
-/// How far the borders of a mesh are from each other.
+/// A border that turns by more than this (cosine) at a vertex has a corner there.
+const CORNER: f64 = 0.85;
+/// The share of chords whose sagitta the mesh is judged by: the longest few may be what tessellation got wrong.
+const TYPICAL: f64 = 0.95;
+
+/// How far the chords of the borders stray from the curves that they stand for: a vertex lies four times as far from the chord
+/// of its neighbours. Two meshes of one curve, with vertices at different places, cannot meet any better.
+fn chord_sag(boundaries: &Boundaries) -> f64 {
+    let mut sags = Vec::new();
+    for border in &boundaries.all {
+        let n = border.vertices.len();
+        let at = |i: usize| boundaries.point(border.vertices[i % n]);
+        let ends = if border.closed { 0 } else { 1 };
+        for i in ends..n.saturating_sub(ends) {
+            let (before, here, after) = (at(i + n - 1), at(i), at(i + 1));
+            let (a, b) = ((here - before).normalize_or_zero(), (after - here).normalize_or_zero());
+            if a.dot(b) > CORNER {
+                sags.push(0.25 * segment_distance(here, before, after).0);
+            }
+        }
+    }
+    sags.sort_unstable_by(f64::total_cmp);
+    sags.get(((sags.len() as f64 * TYPICAL) as usize).min(sags.len().saturating_sub(1)))
+        .copied()
+        .unwrap_or(0.0)
+}
+
+/// How far the borders of a mesh are from each other, if that is more than the coordinates and the chords of the mesh can hold.
 fn survey(boundaries: &Boundaries, resolution: Option<f64>) -> Option<AutoTolerance> {
     let box3 = Box3::from_points(boundaries.positions.iter().copied());
+    let sag = 2.0 * chord_sag(boundaries);
+    let resolution =
+        if sag > resolution.unwrap_or(RESOLUTION * box3.diagonal()) { Some(sag) } else { resolution };
     let mut gaps = closest::nearest_gaps(boundaries);
     if gaps.is_empty() {
         return None;
     }
     gaps.sort_unstable_by(f64::total_cmp);
-    Some(choose(&gaps, resolution, box3.diagonal()))
+    // The valley above what chords of this length make must be in sight.
+    let cap = (LARGEST_GAP * box3.diagonal()).max(CLEAR * CLEAR * sag);
+    Some(choose_below(&gaps, resolution, box3.diagonal(), cap))
 }
