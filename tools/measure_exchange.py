@@ -19,14 +19,18 @@ import json
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 FOLDERS = ["iges", "brep", "iv", "x3d", "obj", "json", "3dm"]
 SKIPPED = {".txt", ".md", ".tsv"}
 ROUNDING = 1e-9
 TIMEOUT = 300
+# Places on one surface, and seconds, for looking again.
+FINE = 90000
+PATIENCE = 90
 # Places on all surfaces from which the nearest point is looked for.
-SEEDS = 160000
+SEEDS = 48000
 
 
 def child(verifier: str, path: Path, mesh: str, report: Path) -> dict:
@@ -93,9 +97,13 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
         low, high = np.array(face.uv[::2]), np.array(face.uv[1::2])
         loops = tuple([exchange.sampled(loop) for loop in part] for part in (patch.outer, patch.holes))
         rims = [part for role in loops for loop in role for part in rim(face, loop, low, high)]
-        samples += rims
+        # Where a trim runs along the surface's own border, what it cuts away ends there and nothing begins.
+        inner = [loop[((loop > low) & (loop < high)).all(1)] for role in loops for loop in role]
+        samples += [face.d0(part) for part in inner if len(part)]
         if not rhino:
             uv = np.concatenate([low + (high - low) * rng.random((6000, 2)), grid(face, patch)])
+            # On the border itself nobody can say which side of a trim a point is on.
+            uv = np.clip(uv, low + 1e-6 * (high - low), high - 1e-6 * (high - low))
             samples.append(face.d0(uv[exchange.inside(patch, loops, uv)]))
         # Far from its net no point is nearest to a patch.
         net = patch.net[..., :3]
@@ -106,7 +114,7 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
         seeds = grid(face, patch, SEEDS // min(len(patches), 16))
         _, first = cKDTree(face.d0(seeds)).query(probes[near], k=2)
         border = Polylines(rims) if rims else None
-        bodies.append((face, patch, loops, border, net.min((0, 1)), net.max((0, 1))))
+        bodies.append([face, patch, loops, border, net.min((0, 1)), net.max((0, 1)), None])
         for k in range(2):
             todo = near[best[near] > 1e-9 * diagonal]
             uv, d = face.project(probes[todo], seeds[first[np.isin(near, todo), k]])
@@ -116,29 +124,33 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
             best[todo] = np.minimum(best[todo], d)
     samples = np.concatenate(samples) if samples else np.zeros((0, 3))
     off = distance(samples)[0]
-    # The projection may end beside the nearest point: what looks too far is looked for again.
-    for i in np.argsort(-best)[:40]:
-        if best[i] > 0.99 * tolerance:
-            best[i] = closer(exchange, bodies, probes[i], best[i])
+    # The projection may end beside the nearest point: what looks too far is looked for again, the worst first.
+    deadline = time.monotonic() + PATIENCE
+    for i in np.argsort(-best):
+        if best[i] <= 0.99 * tolerance or time.monotonic() > deadline:
+            break
+        best[i] = closer(verify, exchange, bodies, probes[i], best[i])
     worst = int(best.argmax())
     return {"to_mesh": float(off.max()), "to_surface": float(best.max()), "gap": 0.0, "diagonal": diagonal,
             "faces": len(patches), "worst": samples[off.argmax()].tolist(), "worst2": probes[worst].tolist(),
             "size": float(np.abs(points).max())}
 
 
-def closer(exchange, bodies: list, p, best: float) -> float:
+def closer(verify, exchange, bodies: list, p, best: float) -> float:
     """The distance of one point from the trimmed surfaces, by ever finer grids around the best few places."""
     import numpy as np
 
-    for face, patch, loops, border, least, most in bodies:
+    for body in bodies:
+        face, patch, loops, border, least, most, fine = body
         if np.linalg.norm(np.maximum(0, np.maximum(least - p, p - most))) >= best:
             continue
         low, high = np.array(face.uv[::2]), np.array(face.uv[1::2])
-        seeds = grid(face, patch)
-        far = np.linalg.norm(face.d0(seeds) - p, axis=1)
-        for uv in seeds[np.argsort(far)[:4]]:
-            size = 0.1 * (high - low)
-            for _ in range(24):
+        if fine is None:
+            seeds = grid(face, patch, FINE)
+            fine = body[6] = seeds, verify.cKDTree(face.d0(seeds))
+        for uv in fine[0][fine[1].query(p, k=4)[1]]:
+            size = 3 * FINE**-0.5 * (high - low)
+            for _ in range(14):
                 lattice = np.stack(np.meshgrid(*[np.linspace(-1, 1, 7)] * 2), -1).reshape(-1, 2)
                 around = np.clip(uv + lattice * size, low, high)
                 found = np.linalg.norm(face.d0(around) - p, axis=1)
