@@ -38,7 +38,8 @@ def measured(program, folder, tolerance):
         if not found:
             print(f"{name}: not there, left out")
             continue
-        line = [program, "bench", "--papers", "--angle", "off", "--tolerance", tolerance, str(found[0])]
+        line = [program, "bench", "--papers", "--angle", "off", "--face-timeout", "4"]
+        line += ["--tolerance", tolerance, str(found[0])]
         ran = subprocess.run(line, capture_output=True, text=True, check=True)
         tables += json.loads(ran.stdout)
         print(name)
