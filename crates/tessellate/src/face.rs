@@ -331,7 +331,7 @@ impl<'a, 's> FaceWork<'a, 's> {
     }
 
     /// The default strategy.
-    fn fill_by_rows(&mut self) {
+    pub fn fill_by_rows(&mut self) {
         self.improve_boundary();
         if self.shape == Shape::Doubly {
             self.place_interior();

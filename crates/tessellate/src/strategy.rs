@@ -11,6 +11,8 @@ pub(crate) mod trace;
 
 pub(crate) mod bezier;
 mod borders;
+#[cfg(test)]
+mod bounds_tests;
 mod cells;
 mod chords;
 mod constrain;

@@ -183,6 +183,7 @@ fn refine(
     bound: Bound,
 ) -> Result<Verdict, String> {
     let boundary = work.mesh.clone();
+    let metrics = work.metrics.clone();
     let mut at_boundary = usize::MAX;
     for round in 0..ROUNDS {
         restore(work, &boundary);
@@ -218,8 +219,23 @@ fn refine(
     }
     let before = work.mesh.triangles.len();
     let verdict = prover.refine(work)?;
-    work.trace.add("triangles added by the default's means", work.mesh.triangles.len() - before);
-    Ok(verdict)
+    work.trace
+        .add("triangles added by the default's means", work.mesh.triangles.len().saturating_sub(before));
+    let kept = match verdict {
+        Verdict::Stuck => false,
+        Verdict::Proven { error, .. } => error <= work.limits.tolerance.max(work.limits.boundary),
+        _ => true,
+    };
+    if kept || prover.hopeless {
+        return Ok(verdict);
+    }
+    // Better a face by the default's own points than one that nothing is proven about.
+    restore(work, &boundary);
+    work.metrics = metrics;
+    work.quads.clear();
+    work.trace.add("faces left to the default strategy", 1);
+    work.fill_by_rows();
+    prover.refine(work)
 }
 
 /// Takes everything out of the face but its loops.

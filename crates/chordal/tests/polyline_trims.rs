@@ -1,0 +1,90 @@
+//! Trims given as polylines come out as smooth as the same trims given as curves.
+//!
+//! The survey of the Blender wiki tells of a tessellator that subdivides trimming curves but takes the points of trimming polylines as
+//! they are: on a curved surface, where a straight line of parameters is no straight line in space, its edges are far off.
+
+use chordal::mesh::Origin;
+use chordal::{Job, JobOptions, Outcome, Strategy, Tolerance};
+use std::path::PathBuf;
+
+/// A trim with few, long sides in the plane of parameters.
+const DIAMOND: [(f64, f64); 5] = [(0.5, 0.05), (0.95, 0.5), (0.5, 0.95), (0.05, 0.5), (0.5, 0.05)];
+
+fn list(points: &[(f64, f64)]) -> String {
+    points.iter().map(|(u, v)| format!("[{u}, {v}]")).collect::<Vec<_>>().join(", ")
+}
+
+fn polyline() -> String {
+    format!(r#"{{"type": "freeform", "dimension": 2, "points": [{}], "reversed": 1}}"#, list(&DIAMOND))
+}
+
+/// The same polyline as a spline of degree 1, or with every side as a Bézier curve of a higher one.
+fn spline(degree: usize) -> String {
+    let mut points = vec![DIAMOND[0]];
+    for w in DIAMOND.windows(2) {
+        points.extend((1..=degree).map(|k| {
+            let t = k as f64 / degree as f64;
+            (w[0].0 + (w[1].0 - w[0].0) * t, w[0].1 + (w[1].1 - w[0].1) * t)
+        }));
+    }
+    let mut knots = vec![0; degree + 1];
+    (1..4).for_each(|k| knots.extend(vec![k; degree]));
+    knots.extend(vec![4; degree + 1]);
+    format!(
+        r#"{{"type": "spline", "degree": {degree}, "knotvector": {knots:?}, "dimension": 2,
+            "control_points": {{"points": [{}]}}, "reversed": 1}}"#,
+        list(&points)
+    )
+}
+
+/// A bicubic sheet, 10 wide, with a bump 4 high.
+fn mesh(name: &str, trim: &str, strategy: Strategy) -> Outcome {
+    let height = |i: usize, j: usize| if (1..3).contains(&i) && (1..3).contains(&j) { 4.0 } else { 0.0 };
+    let place = |k: usize| {
+        format!(
+            "[{}, {}, {}]",
+            (k / 4) as f64 * 10.0 / 3.0,
+            (k % 4) as f64 * 10.0 / 3.0,
+            height(k / 4, k % 4)
+        )
+    };
+    let net = (0..16).map(place).collect::<Vec<_>>().join(", ");
+    let text = format!(
+        r#"{{"shape": {{"type": "surface", "count": 1, "data": [{{
+            "type": "spline", "rational": false, "dimension": 3, "degree_u": 3, "degree_v": 3,
+            "knotvector_u": [0, 0, 0, 0, 1, 1, 1, 1], "knotvector_v": [0, 0, 0, 0, 1, 1, 1, 1], "size_u": 4, "size_v": 4,
+            "control_points": {{"points": [{net}]}}, "delta": [0.05, 0.05],
+            "trims": {{"count": 1, "data": [{trim}]}}}}]}}}}"#
+    );
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.json"));
+    std::fs::write(&path, text).expect("written");
+    let options = JobOptions::default()
+        .with_tolerance(Tolerance::Millimetres(0.01))
+        .with_angle(None)
+        .with_strategy(strategy);
+    chordal::run(&Job::new(path).with_options(options)).expect("a mesh")
+}
+
+fn samples_of_edges(outcome: &Outcome) -> usize {
+    let origins = &outcome.scene.parts[0].mesh.origins;
+    origins.iter().filter(|o| matches!(o, Origin::Edge { .. })).count()
+}
+
+#[test]
+fn a_polyline_is_subdivided_as_finely_as_a_curve() {
+    for strategy in [Strategy::Default, Strategy::Recursive, Strategy::Bezier] {
+        let given = [("polyline", polyline()), ("degree_1", spline(1)), ("degree_3", spline(3))];
+        let meshes = given.map(|(name, trim)| mesh(&format!("{name}_{strategy:?}"), &trim, strategy));
+        let counts = meshes.each_ref().map(samples_of_edges);
+        // Four straight sides over a bump: left alone they would have no sample at all.
+        assert!(counts[0] >= 40, "{strategy:?}: {counts:?}");
+        assert!(counts.iter().all(|c| c.abs_diff(counts[0]) <= 4), "{strategy:?}: {counts:?}");
+        for outcome in &meshes {
+            assert!(outcome.report.clean, "{strategy:?}: {:?}", outcome.report.undone);
+            assert!(outcome.report.boundary_error.is_some_and(|e| e > 0.002 && e <= 0.01));
+            assert!(outcome.report.proven_error <= Some(0.01));
+        }
+        let areas = meshes.each_ref().map(|outcome| outcome.report.area);
+        assert!(areas.iter().all(|a| (a / areas[0] - 1.0).abs() < 1e-3), "{strategy:?}: {areas:?}");
+    }
+}
