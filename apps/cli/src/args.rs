@@ -1,6 +1,8 @@
 //! The command line: what can be asked, with its units and defaults.
 
-use chordal::{Bound, EdgeMethod, Format, JobOptions, Sew, Strategy, Tolerance, Unit, UpAxis};
+use chordal::{
+    Bound, EdgeMethod, Format, JobOptions, ReadOptions, Sew, Strategy, Tolerance, Unit, UpAxis, Winding,
+};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -118,6 +120,9 @@ pub struct AccuracyArgs {
     /// parts no two faces of which share an edge, off for others].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub sew: Option<Sew>,
+    /// Which points trimming loops keep, where the format does not tell outer loops from holes (Open Inventor, VRML, X3D).
+    #[arg(long, value_enum, default_value = "odd")]
+    pub winding: WindingArg,
     /// Threads [default: one per core]. The output is the same for any number.
     #[arg(long, value_name = "N", value_parser = parse_jobs)]
     pub jobs: Option<usize>,
@@ -175,6 +180,14 @@ pub enum BoundArg {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum WindingArg {
+    /// Those that an odd number of loops goes around.
+    Odd,
+    /// Those that an even number of loops, or none, goes around: the outermost loops are holes.
+    Even,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum FormatArg {
     /// Binary STL.
     Stl,
@@ -214,6 +227,10 @@ impl AccuracyArgs {
             BoundArg::Proven => Bound::Proven,
             BoundArg::Estimated => Bound::Estimated,
         };
+        let winding = match self.winding {
+            WindingArg::Odd => Winding::Odd,
+            WindingArg::Even => Winding::Even,
+        };
         JobOptions::default()
             .with_tolerance(self.tolerance)
             .with_boundary_tolerance(self.boundary_tolerance)
@@ -223,6 +240,7 @@ impl AccuracyArgs {
             .with_edge_method(self.edge_method)
             .with_sew(self.sew.unwrap_or_default())
             .with_bound(bound)
+            .with_read(ReadOptions::default().with_winding(winding))
             .with_jobs(self.jobs)
             .with_face_timeout(self.face_timeout.0)
     }

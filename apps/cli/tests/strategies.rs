@@ -143,3 +143,24 @@ fn edge_methods_run_their_own_parts_and_keep_the_proof() {
         }
     }
 }
+
+#[test]
+fn both_conventions_of_trimming_loops_can_be_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, out, report) =
+        (folder.path().join("a.iv"), folder.path().join("a.stl"), folder.path().join("r.json"));
+    // A plane, 4 × 4, with a square hole, or a square that alone is left.
+    let text = "#Inventor V2.1 ascii\nSeparator { Coordinate3 { point [0 0 0, 4 0 0, 0 4 0, 4 4 0] }\n\
+        ProfileCoordinate2 { point [0.25 0.25, 0.75 0.25, 0.75 0.75, 0.25 0.75] }\n\
+        LinearProfile { index [0, 1, 2, 3, 0] }\n\
+        NurbsSurface { numUControlPoints 2 numVControlPoints 2 uKnotVector [0 0 1 1] vKnotVector [0 0 1 1] } }\n";
+    std::fs::write(&file, text).expect("written");
+    for (winding, area) in [("odd", 4.0), ("even", 12.0)] {
+        let line = format!("mesh {{}} -o {{}} --winding {winding} --unit m --report {{}} -q");
+        run(&line, &[&file, &out, &report]).exits(&[0]);
+        let report: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
+        let found = report["area"].as_f64().expect("a number") / 1e6;
+        assert!((found - area).abs() < 1e-9, "{winding}: {found}");
+    }
+}

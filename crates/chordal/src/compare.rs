@@ -3,7 +3,7 @@
 mod measure;
 mod plot;
 
-use crate::job::{MeshedPart, mesh_parts, read_model};
+use crate::job::{MeshedPart, mesh_parts, read_model_with};
 use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_brep::Model;
@@ -91,7 +91,7 @@ pub fn compare(
     cancel: &Cancel,
     tell: &mut dyn FnMut(&ComparedRow),
 ) -> Result<Comparison, JobError> {
-    let model = read_model(input)?;
+    let model = read_model_with(input, &options.read)?;
     let mut comparison = Comparison {
         schema: COMPARE_SCHEMA.into(),
         model: input.display().to_string(),

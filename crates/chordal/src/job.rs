@@ -16,6 +16,7 @@ use crate::sewing::sew_model;
 use crate::{JobError, JobOptions, OnProgress, Progress, Report};
 use chordal_brep::{FaceGeometry, Model};
 use chordal_mesh::{PartMesh, Scene};
+use chordal_read::ReadOptions;
 use chordal_tessellate::{Cancel, PartReport, tessellate_part};
 use chordal_write::{Format, WriteOptions, WriteSummary, write_scene};
 use rayon::prelude::*;
@@ -114,7 +115,7 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     // 1. Read.
     job.tell(Progress::Reading);
     let format = output_format(job)?;
-    let mut model = ledger.time(|s| &mut s.read, || read_model(&job.input))?;
+    let mut model = ledger.time(|s| &mut s.read, || read_model_with(&job.input, &job.options.read))?;
     something_to_mesh(&model, &job.input)?;
     job.check_cancelled()?;
 
@@ -170,8 +171,16 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
 /// # Errors
 /// Where the file cannot be read, or holds neither a face nor a triangle.
 pub fn read_model(input: &Path) -> Result<Model, JobError> {
-    let model =
-        chordal_read::read_file(input).map_err(|source| JobError::Read { path: input.to_owned(), source })?;
+    read_model_with(input, &ReadOptions::default())
+}
+
+/// The same by the caller's conventions.
+///
+/// # Errors
+/// As [`read_model`].
+pub fn read_model_with(input: &Path, options: &ReadOptions) -> Result<Model, JobError> {
+    let model = chordal_read::read_file_with(input, options)
+        .map_err(|source| JobError::Read { path: input.to_owned(), source })?;
     if model.parts.iter().all(|p| p.faces.is_empty() && p.tessellated.is_empty()) {
         let loose = model.parts.iter().map(|p| p.loose.len()).sum();
         return Err(JobError::Empty { path: input.to_owned(), loose });

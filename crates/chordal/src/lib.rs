@@ -53,7 +53,7 @@ pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, StageEn
 pub use convert::{ConvertOptions, Converted, convert};
 pub use error::JobError;
 pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};
-pub use job::{Job, MeshedPart, Outcome, mesh_parts, read_model, run, thread_pool};
+pub use job::{Job, MeshedPart, Outcome, mesh_parts, read_model, read_model_with, run, thread_pool};
 pub use mesh_sewing::{LevelEntry, MeshSewing, MeshSewingReport, OpenBorderEntry, SEW_SCHEMA, sew_mesh_file};
 pub use options::JobOptions;
 pub use papers::{LoopEntry, PaperTables, SurfaceEntry, paper_tables};
@@ -77,6 +77,7 @@ pub use chordal_gpu as gpu;
 pub use chordal_mesh as mesh;
 pub use chordal_nurbs as nurbs;
 pub use chordal_read as read;
+pub use chordal_read::{ReadOptions, Winding};
 pub use chordal_sew as sew;
 pub use chordal_tessellate as tessellate;
 pub use chordal_tessellate::{

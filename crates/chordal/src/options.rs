@@ -1,6 +1,7 @@
 //! What a job is asked for, in millimetres and radians.
 
 use crate::{Sew, Tolerance};
+use chordal_read::ReadOptions;
 use chordal_tessellate::{Bound, EdgeMethod, Strategy};
 use chordal_write::{Format, Unit, UpAxis};
 use std::path::PathBuf;
@@ -29,6 +30,8 @@ pub struct JobOptions {
     pub quads: bool,
     /// How edges become polylines.
     pub edge_method: EdgeMethod,
+    /// What to make of what the file leaves open.
+    pub read: ReadOptions,
     /// Whether loose faces are sewn before they are meshed.
     pub sew: Sew,
     pub bound: Bound,
@@ -60,6 +63,7 @@ impl Default for JobOptions {
             strategy: Strategy::Default,
             quads: false,
             edge_method: EdgeMethod::Default,
+            read: ReadOptions::default(),
             sew: Sew::default(),
             bound: Bound::Proven,
             jobs: None,
@@ -101,6 +105,10 @@ impl JobOptions {
     }
     pub fn with_edge_method(mut self, method: EdgeMethod) -> Self {
         self.edge_method = method;
+        self
+    }
+    pub fn with_read(mut self, read: ReadOptions) -> Self {
+        self.read = read;
         self
     }
     pub fn with_sew(mut self, sew: Sew) -> Self {

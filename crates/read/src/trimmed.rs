@@ -14,6 +14,7 @@ mod nest;
 #[cfg(test)]
 mod tests;
 
+use crate::Winding;
 use chordal_brep::{
     Body, BodyId, BodyKind, Color, Face, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source, Warning,
 };
@@ -56,8 +57,8 @@ pub(crate) enum Role {
     Outer,
     /// The format says that the face lies outside.
     Hole,
-    /// Loops inside an odd number of others are holes.
-    ByNesting,
+    /// By how many other loops are around it, and the convention.
+    ByNesting(Winding),
 }
 
 /// A chain of pieces that closes, or is closed.

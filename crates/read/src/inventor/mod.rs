@@ -12,9 +12,9 @@ mod surfaces;
 mod tests;
 mod walk;
 
-use crate::ReadError;
 use crate::scene::stage::Stage;
 use crate::scene::text;
+use crate::{ReadError, ReadOptions};
 use chordal_brep::Model;
 
 /// Inventor has no unit of its own; its `Units` nodes take lengths for metres where no other one is above.
@@ -27,9 +27,10 @@ pub(crate) fn looks_like_inventor(bytes: &[u8]) -> bool {
 }
 
 /// Reads an Inventor file.
-pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
+pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Model, ReadError> {
     let line = header(bytes);
     let mut graph = if line.contains("binary") { binary::parse(bytes, &line) } else { text::parse(bytes) };
+    graph.winding = options.winding;
     let mut stage = Stage::new(bytes.len());
     walk::walk(&graph, &mut stage);
     let schema = line.trim_start_matches('#').trim().to_owned();

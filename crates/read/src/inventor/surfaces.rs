@@ -105,7 +105,7 @@ fn trims(graph: &Graph, state: &State, notes: &mut Vec<String>) -> Result<Vec<Tr
             pieces.push(piece);
         }
         let source = chain.first().map(|(ix, _)| graph.node(*ix).source()).unwrap_or_default();
-        loops.push(TrimLoop { pieces, role: Role::ByNesting, source });
+        loops.push(TrimLoop { pieces, role: Role::ByNesting(graph.winding), source });
     }
     Ok(loops)
 }

@@ -6,6 +6,7 @@
 use super::bytes::{Bytes, Res};
 use super::curves::completed;
 use super::tables::length_unit;
+use crate::Winding;
 use crate::build::Notes;
 use crate::flat::LengthUnit;
 use crate::trimmed::{Look, Piece, Role, TrimLoop, add_body, add_faces, add_failed};
@@ -140,7 +141,7 @@ fn boundary(mut data: Bytes) -> Res<TrimLoop> {
     let role = match data.i32()? {
         0 => Role::Outer,
         1 => Role::Hole,
-        _ => Role::ByNesting,
+        _ => Role::ByNesting(Winding::Odd),
     };
     // A box of parameter space.
     data.take(32)?;

@@ -1,5 +1,6 @@
 //! Nodes with named fields, whatever the file's encoding.
 
+use crate::Winding;
 use chordal_brep::{Source, Warning};
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;
@@ -168,6 +169,8 @@ pub(crate) struct Graph {
     /// Radians of one unit of angle.
     pub radians: Option<f64>,
     pub warnings: Vec<Warning>,
+    /// The convention for trimming loops.
+    pub winding: Winding,
     dropped: usize,
     dropped_lost: bool,
 }

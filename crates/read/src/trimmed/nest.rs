@@ -4,6 +4,7 @@ use super::chain::Chain;
 use super::clip::{self, Outline};
 use super::natural;
 use super::{Role, Scale};
+use crate::Winding;
 use chordal_nurbs::{DVec2, Surface};
 
 /// Loops that follow the surface's border within this share of the domain are the border.
@@ -24,6 +25,9 @@ pub(super) fn groups(
     chains: Vec<Chain>,
     scale: &Scale,
 ) -> Result<Vec<Vec<Chain>>, String> {
+    let is_even = |chain: &Chain| chain.role == Role::ByNesting(Winding::Even);
+    // By this convention what no loop goes around belongs to the face: the surface's own border is a loop more.
+    let (mut whole, mut covered) = (chains.iter().any(is_even), false);
     let (winding, plain): (Vec<Chain>, Vec<Chain>) = chains.into_iter().partition(|chain| chain.winds);
     let plain = clip::to_domain(told_apart(plain, scale), scale)?;
     let mut nested = Vec::with_capacity(plain.len());
@@ -53,6 +57,11 @@ pub(super) fn groups(
         if (n.area > 0.0) != outer {
             n.chain.reverse();
         }
+        if n.covers && is_even(&n.chain) {
+            // The border itself, given as a loop: nothing is left outside of it.
+            (whole, covered) = (false, true);
+            continue;
+        }
         if outer {
             let chains = if n.covers { natural::loops(surface) } else { vec![n.chain] };
             outers.push(Group { polygon: Some(n.polygon), area: n.area.abs(), chains });
@@ -60,7 +69,7 @@ pub(super) fn groups(
             holes.push(n);
         }
     }
-    if outers.is_empty() {
+    if whole || outers.is_empty() && !covered {
         // Holes alone are cut into the whole surface.
         outers.push(Group { polygon: None, area: f64::INFINITY, chains: natural::loops(surface) });
     }
@@ -120,7 +129,8 @@ fn roles(nested: &[Nested]) -> Vec<bool> {
         .map(|(i, n)| match n.chain.role {
             Role::Outer => true,
             Role::Hole => false,
-            Role::ByNesting => depth(i) % 2 == 0,
+            Role::ByNesting(Winding::Odd) => depth(i) % 2 == 0,
+            Role::ByNesting(Winding::Even) => depth(i) % 2 == 1,
         })
         .collect()
 }

@@ -38,7 +38,7 @@ fn round(radii: &[f64]) -> Arc<Surface> {
 fn rectangle(a: [f64; 2], b: [f64; 2]) -> TrimLoop {
     let corners = [DVec2::from(a), DVec2::new(b[0], a[1]), DVec2::from(b), DVec2::new(a[0], b[1])];
     let pieces = (0..4).map(|k| Piece::line(corners[k], corners[(k + 1) % 4])).collect();
-    TrimLoop { pieces, role: Role::ByNesting, source: Source::default() }
+    TrimLoop { pieces, role: Role::ByNesting(Winding::Odd), source: Source::default() }
 }
 
 impl Piece {
@@ -146,6 +146,32 @@ fn nesting_makes_holes_and_islands_whatever_the_direction() {
 }
 
 #[test]
+fn the_even_convention_keeps_what_the_odd_one_drops() {
+    let trims = [
+        rectangle([0.1, 0.1], [1.9, 2.9]),
+        rectangle([0.3, 0.3], [1.5, 2.5]),
+        rectangle([0.5, 0.5], [0.9, 0.9]),
+        rectangle([1.0, 1.0], [1.4, 2.0]),
+    ];
+    let even = |trim: &TrimLoop| TrimLoop { role: Role::ByNesting(Winding::Even), ..trim.clone() };
+    let areas = |trims: Vec<TrimLoop>| {
+        let (part, _) = made(&patch(), &trims);
+        let mut found: Vec<Vec<f64>> = part
+            .faces
+            .iter()
+            .map(|f| f.loops.iter().map(|l| (area(&part, l) * 1e6).round() / 1e6).collect())
+            .collect();
+        found.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        found
+    };
+    assert_eq!(areas(trims.iter().map(even).collect()), [vec![6.0, -5.04], vec![2.64, -0.16, -0.4]]);
+    // One loop is a hole; the border itself as a loop is nothing more, and leaves what is inside the next one.
+    assert_eq!(areas(vec![even(&trims[0])]), [vec![6.0, -5.04]]);
+    let border = rectangle([0.0, 0.0], [2.0, 3.0]);
+    assert_eq!(areas(vec![even(&border), even(&trims[1])]), [vec![2.64]]);
+}
+
+#[test]
 fn holes_alone_are_cut_into_the_whole_surface() {
     let hole = TrimLoop { role: Role::Hole, ..rectangle([0.5, 0.5], [1.0, 1.0]) };
     let (part, _) = made(&patch(), &[hole]);
@@ -177,7 +203,8 @@ fn corners_become_vertices() {
     let knots = vec![0., 0., 1., 2., 3., 4., 4.];
     let spline = Piece::whole(Curve2::Nurbs(NurbsCurve2::new(1, knots, corners, None).unwrap()));
     for piece in [polyline.clone(), spline, polyline.reversed()] {
-        let trim = TrimLoop { pieces: vec![piece], role: Role::ByNesting, source: Source::default() };
+        let trim =
+            TrimLoop { pieces: vec![piece], role: Role::ByNesting(Winding::Odd), source: Source::default() };
         let (part, warnings) = made(&patch(), &[trim]);
         assert_eq!((part.edges.len(), part.vertices.len(), warnings.len()), (4, 4, 0));
         assert!((area(&part, &part.faces[0].loops[0]) - 1.5).abs() < 1e-9);
@@ -208,7 +235,7 @@ fn a_piece_along_both_sides_of_a_seam_is_one_edge() {
         Piece::whole(Curve2::Polyline(wavy.clone())).reversed(),
         Piece::line(wavy[0], DVec2::ZERO),
     ];
-    let trim = TrimLoop { pieces, role: Role::ByNesting, source: Source::default() };
+    let trim = TrimLoop { pieces, role: Role::ByNesting(Winding::Odd), source: Source::default() };
     let (part, warnings) = made(&round(&[1.0, 1.0]), &[trim]);
     assert!(warnings.is_empty(), "{warnings:?}");
     let edges: Vec<EdgeId> = coedges(&part.faces[0].loops[0]).iter().map(|c| c.edge).collect();
@@ -229,7 +256,8 @@ fn a_loop_that_leaves_its_surface_is_cut_off_there() {
 fn loops_without_finite_extent_fail_their_face() {
     let endless = Curve2::Line { origin: DVec2::ZERO, direction: DVec2::X };
     let piece = Piece { curve: Arc::new(endless), range: Range::ALL, forward: true };
-    let trim = TrimLoop { pieces: vec![piece], role: Role::ByNesting, source: Source::default() };
+    let trim =
+        TrimLoop { pieces: vec![piece], role: Role::ByNesting(Winding::Odd), source: Source::default() };
     let (part, _) = made(&patch(), &[trim]);
     assert!(matches!(part.faces[0].geometry, FaceGeometry::Failed(_)));
 }

@@ -11,9 +11,9 @@ mod tests;
 mod walk;
 mod xml;
 
-use crate::ReadError;
 use crate::scene::stage::Stage;
 use crate::scene::{prototypes, text};
+use crate::{ReadError, ReadOptions};
 use chordal_brep::Model;
 use memchr::memmem;
 
@@ -37,7 +37,7 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
 }
 
 /// Reads a VRML97 or X3D file.
-pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
+pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Model, ReadError> {
     let bytes = without_mark(bytes);
     let (mut graph, schema) = if bytes.starts_with(b"#") {
         let end = memchr::memchr2(b'\n', b'\r', bytes).unwrap_or(bytes.len());
@@ -47,6 +47,7 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
         xml::parse(bytes)
     };
     prototypes::expand(&mut graph);
+    graph.winding = options.winding;
     let mut stage = Stage::new(bytes.len());
     walk::walk(&graph, &mut stage);
     let millimetres = graph.millimetres.unwrap_or(1000.0);

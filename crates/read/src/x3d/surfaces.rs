@@ -112,7 +112,7 @@ fn trims(graph: &Graph, ix: NodeIx, notes: &mut Vec<String>) -> Result<Vec<TrimL
                 pieces.push(Piece::whole(made));
             }
         }
-        loops.push(TrimLoop { pieces, role: Role::ByNesting, source: contour.source() });
+        loops.push(TrimLoop { pieces, role: Role::ByNesting(graph.winding), source: contour.source() });
     }
     Ok(loops)
 }
