@@ -25,9 +25,9 @@ pub(super) fn groups(
     chains: Vec<Chain>,
     scale: &Scale,
 ) -> Result<Vec<Vec<Chain>>, String> {
-    let is_even = |chain: &Chain| chain.role == Role::ByNesting(Winding::Even);
-    // By this convention what no loop goes around belongs to the face: the surface's own border is a loop more.
-    let (mut whole, mut covered) = (chains.iter().any(is_even), false);
+    let mut chains = chains;
+    // By the even convention what no loop goes around belongs to the face.
+    let whole = chains.iter().any(is_even) && !by_the_odd_one(&mut chains, scale);
     let (winding, plain): (Vec<Chain>, Vec<Chain>) = chains.into_iter().partition(|chain| chain.winds);
     let plain = clip::to_domain(told_apart(plain, scale), scale)?;
     let mut nested = Vec::with_capacity(plain.len());
@@ -57,11 +57,6 @@ pub(super) fn groups(
         if (n.area > 0.0) != outer {
             n.chain.reverse();
         }
-        if n.covers && is_even(&n.chain) {
-            // The border itself, given as a loop: nothing is left outside of it.
-            (whole, covered) = (false, true);
-            continue;
-        }
         if outer {
             let chains = if n.covers { natural::loops(surface) } else { vec![n.chain] };
             outers.push(Group { polygon: Some(n.polygon), area: n.area.abs(), chains });
@@ -69,7 +64,7 @@ pub(super) fn groups(
             holes.push(n);
         }
     }
-    if whole || outers.is_empty() && !covered {
+    if whole || outers.is_empty() {
         // Holes alone are cut into the whole surface.
         outers.push(Group { polygon: None, area: f64::INFINITY, chains: natural::loops(surface) });
     }
@@ -82,6 +77,19 @@ pub(super) fn groups(
         }
     }
     Ok(outers.into_iter().map(|group| group.chains).collect())
+}
+
+fn is_even(chain: &Chain) -> bool {
+    chain.role == Role::ByNesting(Winding::Even)
+}
+
+/// Where the surface's own border is among the loops of the even convention, all others go by the odd one without it.
+fn by_the_odd_one(chains: &mut Vec<Chain>, scale: &Scale) -> bool {
+    let is_border = |c: &Chain| is_even(c) && !c.winds && covers_domain(&c.polygon(scale), scale);
+    let Some(border) = chains.iter().position(is_border) else { return false };
+    chains.remove(border);
+    chains.iter_mut().filter(|c| is_even(c)).for_each(|c| c.role = Role::ByNesting(Winding::Odd));
+    true
 }
 
 /// Outer loops and holes, before they are cut off at the border of the domain.
