@@ -98,6 +98,25 @@ impl Region {
         })
     }
 
+    /// True where a chord, of which none is longer than `longest`, comes nearer to the box than `share` of its length; lengths
+    /// counted in `scale` per direction.
+    pub fn is_crossed_in_proportion(&self, b: UvBox, scale: DVec2, share: f64, longest: f64) -> bool {
+        let reach = |[p, q]: [DVec2; 2]| DVec2::splat(share * ((q - p) * scale).length()) / scale;
+        self.near(b.inflated(DVec2::splat(longest * share) / scale)).into_iter().any(|k| {
+            let [p, q] = self.ends(k);
+            chord_meets(p, q, b.inflated(reach([p, q])))
+        })
+    }
+
+    /// The length of the longest chord.
+    pub fn longest(&self, scale: DVec2) -> f64 {
+        let length = |k: u32| {
+            let [p, q] = self.ends(k);
+            ((q - p) * scale).length()
+        };
+        (0..self.chords.len() as u32).map(length).fold(0.0, f64::max)
+    }
+
     /// The chord nearest to `p` with `p` within `reach` of it, lengths counted in `scale` per direction.
     pub fn nearest(&self, p: DVec2, scale: DVec2, reach: f64) -> Option<u32> {
         let around = UvBox::new(p, p).inflated(scale * reach);

@@ -208,8 +208,12 @@ fn refine(
         if let Some(verdict) = judged.request {
             return Ok(verdict);
         }
-        if judged.coarse.is_empty() {
+        if judged.coarse.is_empty() && judged.error <= work.limits.tolerance.max(work.limits.boundary) {
             return Ok(prover.proven(judged.error));
+        }
+        // Nothing left to cut, and chords too coarse that nobody may cut any more.
+        if judged.coarse.is_empty() {
+            break;
         }
         // Inside, smaller cells always help in the end. Where a long chord meets small cells they need not.
         if !judged.is_inside && judged.coarse.len() >= at_boundary || !method.refine(&judged.coarse) {
