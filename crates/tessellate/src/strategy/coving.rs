@@ -31,10 +31,6 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Cells nearer to a loop than this share of their size are left out: triangles between them and the loop would be slivers.
 const CLEAR: f64 = 0.25;
 
-/// Cells nearer to a chord than this share of its length are left out, too: triangles over the chord would be flat, and the surface
-/// below them is not.
-const CLEAR_OF_CHORD: f64 = 0.25;
-
 /// Triangles of the strip between loops (each a range of `points`, the face on their left) and the borders of a region (closed
 /// chains of indices into `points`, the region on their left).
 ///
@@ -66,8 +62,6 @@ pub(crate) struct Coving {
     tolerance: f64,
     measure: Measure,
     halvings: usize,
-    /// Lengths in space per parameter, on average.
-    lengths: DVec2,
 }
 
 /// All cells are halved at most this often.
@@ -81,19 +75,14 @@ impl Coving {
         let tolerance = work.limits.tolerance;
         let mut cells = Cells::new(work.context.surface, region.uv_box, tolerance)?;
         cells.begin(&UniformGrid, &region, tolerance);
-        let metric = mean_metric(work.context.surface, region.uv_box);
-        let lengths = DVec2::new(metric.uu, metric.vv).sqrt();
-        Ok(Self { region, cells, tolerance, measure, halvings: 0, lengths })
+        Ok(Self { region, cells, tolerance, measure, halvings: 0 })
     }
 
     /// Cells that keep clear of the loops.
     fn inner(&self) -> Vec<UvBox> {
-        let longest = self.region.longest(self.lengths);
         let clear = |b: &UvBox| {
             let around = b.inflated(b.size() * CLEAR);
-            self.region.contains(b.center())
-                && !self.region.is_crossed(around)
-                && !self.region.is_crossed_in_proportion(*b, self.lengths, CLEAR_OF_CHORD, longest)
+            self.region.contains(b.center()) && !self.region.is_crossed(around)
         };
         let mut inner: Vec<UvBox> = self.cells.leaves.iter().map(|l| l.bounds).filter(clear).collect();
         // Where two cells share a corner only, the border would touch itself there.

@@ -3,7 +3,6 @@
 //! Chords are sorted into a uniform grid of bins. Inside is decided by counting the chords that a ray to the right crosses,
 //! with exact predicates; a point on a chord counts as on either side.
 
-use crate::chart::Segment;
 use crate::triangulate::orient;
 use crate::unroll::Chart;
 use chordal_nurbs::{DVec2, UvBox};
@@ -13,8 +12,6 @@ pub(crate) struct Region {
     pub uv_box: UvBox,
     chords: Vec<[u32; 2]>,
     points: Vec<DVec2>,
-    /// Chords that are one point of space.
-    at_pole: Vec<bool>,
     bins: Vec<Vec<u32>>,
     count: [usize; 2],
 }
@@ -26,23 +23,14 @@ impl Region {
             (start..end).map(move |i| [i, if i + 1 == end { start } else { i + 1 }])
         };
         let chords: Vec<[u32; 2]> = chart.loops.iter().flat_map(ring).collect();
-        let mut region = Self::from_chords(points, chords);
-        let is_pole = |c: &[u32; 2]| chart.points[c[0] as usize].segment == Segment::Pole;
-        region.at_pole = region.chords.iter().map(is_pole).collect();
-        region
+        Self::from_chords(points, chords)
     }
 
     fn from_chords(points: Vec<DVec2>, chords: Vec<[u32; 2]>) -> Self {
         let side = ((chords.len() as f64).sqrt().ceil() as usize).clamp(1, 512);
         let uv_box = UvBox::from_points(chords.iter().map(|c| points[c[0] as usize]));
-        let mut region = Self {
-            uv_box,
-            at_pole: vec![false; chords.len()],
-            chords,
-            points,
-            bins: vec![Vec::new(); side * side],
-            count: [side; 2],
-        };
+        let mut region =
+            Self { uv_box, chords, points, bins: vec![Vec::new(); side * side], count: [side; 2] };
         for k in 0..region.chords.len() {
             let [a, b] = region.ends(k as u32);
             for bin in region.bins_of(UvBox::new(a.min(b), a.max(b))) {
@@ -108,25 +96,6 @@ impl Region {
             let [p, q] = self.ends(k);
             chord_meets(p, q, b)
         })
-    }
-
-    /// True where a chord, of which none is longer than `longest`, comes nearer to the box than `share` of its length; lengths
-    /// counted in `scale` per direction.
-    pub fn is_crossed_in_proportion(&self, b: UvBox, scale: DVec2, share: f64, longest: f64) -> bool {
-        let reach = |[p, q]: [DVec2; 2]| DVec2::splat(share * ((q - p) * scale).length()) / scale;
-        self.near(b.inflated(DVec2::splat(longest * share) / scale)).into_iter().any(|k| {
-            let [p, q] = self.ends(k);
-            !self.at_pole[k as usize] && chord_meets(p, q, b.inflated(reach([p, q])))
-        })
-    }
-
-    /// The length of the longest chord that is no pole.
-    pub fn longest(&self, scale: DVec2) -> f64 {
-        let length = |k: u32| {
-            let [p, q] = self.ends(k);
-            ((q - p) * scale).length()
-        };
-        (0..self.chords.len() as u32).filter(|&k| !self.at_pole[k as usize]).map(length).fold(0.0, f64::max)
     }
 
     /// The chord nearest to `p` with `p` within `reach` of it, lengths counted in `scale` per direction.
