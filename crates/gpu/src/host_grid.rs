@@ -40,17 +40,17 @@ pub fn host_grid(
     let mut coefficients = vec![[0.0; 4]; p + 1];
     for (j, &v) in vs.iter().enumerate() {
         let (span_v, t_v) = along_v.locate(v);
-        let weights = bernstein(q, t_v);
-        let mut start = 0;
-        for &(span_u, count) in &runs {
-            let cell = (span_u - along_u.span) as usize * cells_v + (span_v - along_v.span) as usize;
-            let at = entry.bezier as usize + cell * (p + 1) * (q + 1);
-            let net = &set.bezier[at..at + (p + 1) * (q + 1)];
-            polynomial(net, &weights, &mut coefficients);
-            let [x, y, z] = xyz.each_mut().map(|c| &mut c[start..start + count]);
-            arch.dispatch(Row { coefficients: &coefficients, ts: &ts[start..start + count], x, y, z });
-            start += count;
-        }
+        let first = entry.bezier as usize + (span_v - along_v.span) as usize * (p + 1) * (q + 1);
+        arch.dispatch(Row {
+            nets: &set.bezier[first..],
+            net_stride: cells_v * (p + 1) * (q + 1),
+            first_span: along_u.span,
+            runs: &runs,
+            weights: &bernstein(q, t_v),
+            coefficients: &mut coefficients,
+            ts: &ts,
+            xyz: &mut xyz,
+        });
         row(j, [&xyz[0], &xyz[1], &xyz[2]]);
     }
     Ok(())
@@ -73,6 +73,7 @@ fn bernstein(degree: usize, t: f64) -> Vec<f64> {
 }
 
 /// The coefficients of the powers of u of one row, lowest first: differences of the row's Bézier points.
+#[inline(always)]
 fn polynomial(net: &[[f64; 4]], weights: &[f64], coefficients: &mut [[f64; 4]]) {
     for (c, line) in coefficients.iter_mut().zip(net.chunks_exact(weights.len())) {
         *c = [0.0; 4];
@@ -93,13 +94,19 @@ fn polynomial(net: &[[f64; 4]], weights: &[f64], coefficients: &mut [[f64; 4]]) 
     }
 }
 
-/// One span of one row.
+/// One row: everything of it runs with the widest instructions there are.
 struct Row<'a> {
-    coefficients: &'a [[f64; 4]],
+    /// From the net of the first cell in this row of cells on.
+    nets: &'a [[f64; 4]],
+    /// From one cell to the next along u.
+    net_stride: usize,
+    first_span: u32,
+    /// Spans, and how many of the points lie in each.
+    runs: &'a [(u32, usize)],
+    weights: &'a [f64],
+    coefficients: &'a mut [[f64; 4]],
     ts: &'a [f64],
-    x: &'a mut [f64],
-    y: &'a mut [f64],
-    z: &'a mut [f64],
+    xyz: &'a mut [Vec<f64>; 3],
 }
 
 impl WithSimd for Row<'_> {
@@ -107,10 +114,19 @@ impl WithSimd for Row<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        // A length known to the compiler keeps the loop over degrees out of the loop over points.
-        match <&[[f64; 4]; 4]>::try_from(self.coefficients) {
-            Ok(cubic) => points(simd, cubic.as_slice(), self.ts, [self.x, self.y, self.z]),
-            Err(_) => points(simd, self.coefficients, self.ts, [self.x, self.y, self.z]),
+        let mut start = 0;
+        for &(span, count) in self.runs {
+            let at = (span - self.first_span) as usize * self.net_stride;
+            let net = &self.nets[at..at + self.coefficients.len() * self.weights.len()];
+            let run = start..start + count;
+            let out = self.xyz.each_mut().map(|c| &mut c[run.clone()]);
+            polynomial(net, self.weights, self.coefficients);
+            // A length known to the compiler keeps the loop over degrees out of the loop over points.
+            match <&[[f64; 4]; 4]>::try_from(&*self.coefficients) {
+                Ok(cubic) => points(simd, cubic.as_slice(), &self.ts[run], out),
+                Err(_) => points(simd, self.coefficients, &self.ts[run], out),
+            }
+            start += count;
         }
     }
 }
@@ -146,7 +162,8 @@ fn points<S: Simd>(simd: S, coefficients: &[[f64; 4]], ts: &[f64], [x, y, z]: [&
         for c in coefficients.iter().rev() {
             (0..4).for_each(|i| h[i] = h[i] * t + c[i]);
         }
-        (rest_x[k], rest_y[k], rest_z[k]) = (h[0] / h[3], h[1] / h[3], h[2] / h[3]);
+        let by_w = 1.0 / h[3];
+        (rest_x[k], rest_y[k], rest_z[k]) = (h[0] * by_w, h[1] * by_w, h[2] * by_w);
     }
 }
 
