@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use chordal_nurbs::{
-    Curve, DVec2, DVec3, Facet, Frame, NurbsCurve3, NurbsSurface, Surface, SurfaceBounds, UvBox, chord_bound,
-    facet_bound,
+    Curve, DVec2, DVec3, Facet, Frame, NurbsCurve3, NurbsSurface, Surface, SurfaceBounds, SurfaceInverter,
+    UvBox, chord_bound, facet_bound,
 };
 
 /// Mixed into all random numbers: CHORDAL_SEED hunts elsewhere.
@@ -266,6 +266,55 @@ fn no_chord_of_a_patch_is_farther_off_than_its_bound() {
     }
     assert!(ratios.len() > 2_000, "only {} chords have a bound", ratios.len());
     quantiles("chords", ratios);
+}
+
+/// Along the nose of a ring thin facets shift sideways by more than they are high: their own plane says little of how steep the
+/// surface is.
+#[test]
+fn no_sliver_on_a_nose_is_farther_off_than_its_bound() {
+    let mut random = Random(seed().rotate_left(17) ^ 0x1234_5678_9ABC_DEF1);
+    let mut scratch = Vec::new();
+    let (mut bounded, mut wide) = (0, 0);
+    for round in 0..4_000 {
+        // (x, −x²/2R − y²/2r, y) for x within ±6 and y within ±1; facets keep off the surface's own ends.
+        let (large, small) = (28.0 * random.scale(0.3), 0.2 * random.scale(0.3));
+        let mut points = Vec::new();
+        for (x, xx) in [(-6.0, 36.0), (0.0, -36.0), (6.0, 36.0)] {
+            for (y, yy) in [(-1.0, 1.0), (0.0, -1.0), (1.0, 1.0)] {
+                points.push(DVec3::new(x, -xx / (2.0 * large) - yy / (2.0 * small), y));
+            }
+        }
+        let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let surface = Surface::Nurbs(NurbsSurface::new([2, 2], knots.clone(), knots, points, None).unwrap());
+        let middle = DVec2::new(0.5 + 0.05 * random.signed(), 0.5 + 0.2 * random.signed());
+        let along = 0.45 * random.next();
+        let aside = |random: &mut Random| 0.02 * random.scale(1.0) * random.signed();
+        let uv = [
+            middle + DVec2::new(-along, aside(&mut random)),
+            middle + DVec2::new(along, aside(&mut random)),
+            middle + DVec2::new(along * random.signed(), aside(&mut random)),
+        ];
+        let uv = uv.map(|p| p.clamp(DVec2::splat(0.15), DVec2::splat(0.85)));
+        let xyz = uv.map(|p| surface.point(p));
+        let bounds = SurfaceBounds::new(&surface, UvBox::from_points(uv), 0.1);
+        for enough in [0.03, 0.1, 0.2] {
+            let facet = Facet { uv, xyz, sag: [None; 3] };
+            let error = facet_bound(&bounds, &facet, enough, &mut scratch).error;
+            if error > enough {
+                continue;
+            }
+            bounded += 1;
+            let inverter = SurfaceInverter::new(&surface, surface.domain());
+            let farthest =
+                lattice(12).map(|w| inverter.invert(blend3(xyz, w), None).distance).fold(0.0, f64::max);
+            wide += usize::from(farthest > 0.5 * error);
+            assert!(
+                farthest <= error + 1e-9,
+                "facet {round}: {error} is below {farthest}: {surface:?} {uv:?}"
+            );
+        }
+    }
+    assert!(bounded > 1_000 && wide > 50, "{bounded} facets, {wide} near their bound");
 }
 
 /// A parallelogram of a patch as a grid of facets whose inner corners are shaken.

@@ -88,10 +88,21 @@ pub(super) fn bound(
     };
     let normal = form(n, facet.xyz[0]);
     let rate = pieces.iter().fold(DVec2::ZERO, |m, p| m.max(p.weight_rate)) / least_weight;
-    let slope = slope(&normal, &frame) + weight_slope(&frame, rate, enough);
     let sideways: [Modelled; 3] = std::array::from_fn(|i| form(frame.m[i], facet.xyz[(i + 1) % 3]));
     let quick = quick_parts(&frame, &normal, &sideways);
-    let bound = combine(facet, &quick, slope);
+    let mut slope = f64::INFINITY;
+    let mut bound = combine(facet, &quick, slope);
+    if bound.error > enough {
+        // Lengths in the facet are those of its image where the image is not distorted.
+        let longest = (0..3).fold(0, |best, i| if length[i] > length[best] { i } else { best });
+        let lengthwise = form(sides[longest] / length[longest], facet.xyz[(longest + 1) % 3]);
+        let distortion = distortion(&frame, [&sideways[longest], &lengthwise], rate);
+        if distortion < 1.0 {
+            let flat = steepness(&normal, &frame) + weight_slope(&frame, rate, enough);
+            slope = flat / (1.0 - distortion);
+            bound = combine(facet, &quick, slope);
+        }
+    }
     // Where even the least that the enclosures allow on an edge is too much, looking closer is in vain.
     let least: [f64; 3] =
         std::array::from_fn(|i| normal.cubic.mid_edge(i) - normal.form.reach_along(frame.d[i]) / 8.0);
@@ -358,10 +369,34 @@ fn combine(facet: &Facet, parts: &Parts, slope: f64) -> FacetBound {
     FacetBound { error, edges }
 }
 
+/// How much the image of T is stretched, sheared or turned in the facet's plane against the facet, at most: |D(S − L)| there, in two
+/// directions at right angles. Below 1 the image is a graph over the facet's plane, and its slope is that over T divided by what is left.
+fn distortion(frame: &Frame3, across: [&Modelled; 2], rate: DVec2) -> f64 {
+    let [a, b] = across.map(|f| steepness(f, frame) + weight_distortion(frame, f, rate));
+    a.hypot(b)
+}
+
+/// What a changing weight adds to it: of w·e the error of interpolation leaves out −Σ λ_i λ_j (w_i − w_j)(l_i − l_j), l the coordinate
+/// of L; and e itself is divided by the weight.
+fn weight_distortion(frame: &Frame3, f: &Modelled, rate: DVec2) -> f64 {
+    if rate == DVec2::ZERO {
+        return 0.0;
+    }
+    let size = f.cubic.largest() + f.form.reach_along(frame.size) / 8.0;
+    let change = rate.dot(frame.size);
+    let longest = frame.length.iter().fold(0.0f64, |m, l| m.max(*l));
+    let sine = |j: usize, k: usize| frame.area2 / (frame.length[j] * frame.length[k]);
+    let product = (0..3).fold(f64::INFINITY, |best, i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        best.min(3.0 * change * longest * (1.0 / frame.length[j] + 1.0 / frame.length[k]) / sine(j, k))
+    });
+    product + weight_slope(frame, rate, size)
+}
+
 /// Bounds the slope of S over the facet: f = n·S has a derivative along side ij of at most
 /// ½ max(|h_ij|, |h_jk − h_ik|), six times the largest coefficient of the cubic part (a derivative's coefficients are three times
 /// differences of two), and the remainder's share; two sides give the gradient.
-fn slope(normal: &Modelled, frame: &Frame3) -> f64 {
+fn steepness(normal: &Modelled, frame: &Frame3) -> f64 {
     let Frame3 { d, length, size, kink, area2, .. } = frame;
     let (h, reach) = (&normal.cubic.h, &normal.form.reach);
     let cubic = 6.0 * normal.cubic.cubic_part();
