@@ -172,18 +172,24 @@ fn reduced(curve: BezierCurve<DVec3>, options: &LiftOptions) -> (BezierCurve<DVe
     (best, error)
 }
 
-/// As many degrees lower as cost no more than `lossless` of the curve's size all together, and what they cost.
+/// Rounding of the control points, in units of the last place, that steps of reduction make larger.
+const ROUNDING: f64 = 64.0;
+
+/// As many degrees lower as cost no more than `lossless` of the curve's size and the rounding of its points all together, and what
+/// they cost.
 ///
 /// Every step takes the left half of the control points from the left, the right half from the right, the mean where they meet,
 /// and is judged by elevating the result again.
 fn without_spare_degrees<V: Vector>(curve: &BezierCurve<V>, lossless: f64) -> (BezierCurve<V>, f64) {
     let origin = curve.points[0];
     let size = curve.points.iter().fold(0.0f64, |m, p| m.max((*p - origin).norm()));
+    // Far from the origin a short curve's points are rounded by more than a share of its size.
+    let rounding = ROUNDING * f64::EPSILON * curve.points.iter().fold(0.0f64, |m, p| m.max(p.norm()));
     let mut lean = curve.clone();
     let mut cost = 0.0;
     while lean.degree() > 1 {
         match lean.reduced() {
-            Some((lower, step)) if cost + step <= lossless * size => {
+            Some((lower, step)) if cost + step <= lossless * size + rounding => {
                 lean = lower;
                 cost += step;
             }
