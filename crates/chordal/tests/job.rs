@@ -58,6 +58,16 @@ fn a_face_that_ends_at_a_crease_gets_two_triangles_per_panel() {
     assert_eq!((outcome.report.triangles, outcome.report.rounds), (6, 0));
 }
 
+/// The border of an offset of a free surface has no proven bound: that is said, and no edge is halved for it without end.
+#[test]
+fn edges_of_which_nothing_is_proven_end() {
+    let path = corpus("bracket").with_file_name("iges").join("untrimmed.igs");
+    let report = chordal::run(&Job::new(path)).expect("a mesh").report;
+    assert!(report.undone.iter().any(|u| u.contains("not proven")), "{:?}", report.undone);
+    assert!(report.triangles < 20_000, "{}", report.triangles);
+    assert_eq!(report.faces.failed, []);
+}
+
 #[test]
 fn reports_survive_a_round_trip() {
     let report = chordal::run(&Job::new(corpus("bracket"))).expect("a mesh").report;

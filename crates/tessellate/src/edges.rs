@@ -48,6 +48,10 @@ const CHORD_AIM: f64 = 0.985;
 /// A chord is halved at most this often for the turn of a face along it.
 const MAX_HALVINGS: usize = 24;
 
+/// A chord of which nothing is proven is halved this often: shorter ones mostly have a bound, and where these have none no
+/// shorter one will.
+const UNBOUNDED_ROUNDS: usize = 4;
+
 /// A kink of the tangent of more than this (radians) is a corner, and a corner is a vertex.
 const CORNER: f64 = 1e-3;
 
@@ -111,6 +115,10 @@ impl EdgeSamples {
         for _ in 0..8 {
             let t = probes.spread(count);
             let worst = t.windows(2).map(|t| curve.chord_error(t[0], t[1])).fold(0.0, f64::max);
+            // Of some curves (on offsets of free surfaces) nothing is proven, however short the chords.
+            if worst.is_infinite() {
+                break;
+            }
             if worst <= limits.tolerance {
                 self.t.extend_from_slice(&turning_less(t, curve, range, uses, limits)[1..]);
                 return;
@@ -146,9 +154,12 @@ impl EdgeSamples {
         uses: &[EdgeUse<'_, '_>],
         limits: &Limits,
     ) {
-        for _ in 0..24 {
+        for round in 0..24 {
             let before = t.len();
-            t = split_where(&t, |a, b| curve.chord_error(a, b) > limits.tolerance);
+            t = split_where(&t, |a, b| {
+                let error = curve.chord_error(a, b);
+                error > limits.tolerance && (error.is_finite() || round < UNBOUNDED_ROUNDS)
+            });
             if t.len() == before || t.len() > 1_000_000 {
                 break;
             }
