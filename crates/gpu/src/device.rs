@@ -2,7 +2,7 @@
 
 use crate::GpuError;
 use std::sync::{Arc, Mutex};
-use wgpu::{Adapter, DeviceType, Features, Limits};
+use wgpu::{Adapter, DeviceType, DownlevelFlags, Features, Limits};
 
 /// Which kind of adapter may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +36,14 @@ impl Gpu {
     /// [`GpuError::NoDevice`] where there is none, [`GpuError::Lacks`] where it cannot compute, [`GpuError::Refused`]
     /// where the driver refuses.
     pub fn open(choice: DeviceChoice) -> Result<Self, GpuError> {
+        Self::open_within(choice, u64::MAX)
+    }
+
+    /// As [`Self::open`], with a device that binds at most `binding` bytes at once, as if the adapter could do no more.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_within(choice: DeviceChoice, binding: u64) -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::VULKAN,
             flags: wgpu::InstanceFlags::empty(),
@@ -50,24 +58,23 @@ impl Gpu {
             };
             return Err(GpuError::NoDevice { asked: asked.into() });
         };
-        Self::from_adapter(&adapter)
+        Self::from_adapter(&adapter, binding)
     }
 
-    fn from_adapter(adapter: &Adapter) -> Result<Self, GpuError> {
+    fn from_adapter(adapter: &Adapter, binding: u64) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let name = if info.driver.is_empty() {
             info.name.clone()
         } else {
             format!("{} ({} {})", info.name, info.driver, info.driver_info)
         };
-        let required = Features::IMMEDIATES;
-        if !adapter.features().contains(required) {
-            return Err(GpuError::Lacks { adapter: name, what: "immediate data (push constants)".into() });
-        }
-        let limits = adapter.limits();
-        if let Some(what) = missing(&limits) {
+        let computes = adapter.get_downlevel_capabilities().flags.contains(DownlevelFlags::COMPUTE_SHADERS);
+        let mut limits = adapter.limits();
+        if let Some(what) = missing(computes, adapter.features(), &limits) {
             return Err(GpuError::Lacks { adapter: name, what });
         }
+        limits.max_storage_buffer_binding_size = limits.max_storage_buffer_binding_size.min(binding);
+        let required = Features::IMMEDIATES;
         let wished = Features::SHADER_F64 | Features::TIMESTAMP_QUERY | Features::MULTI_DRAW_INDIRECT_COUNT;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("chordal"),
@@ -164,8 +171,14 @@ fn chosen(adapters: Vec<Adapter>, choice: DeviceChoice) -> Option<Adapter> {
     adapters.into_iter().filter(allowed).min_by_key(rank)
 }
 
-/// What the kernels need and the limits do not give, in words.
-fn missing(limits: &Limits) -> Option<String> {
+/// What the kernels need and an adapter does not have, in words.
+fn missing(computes: bool, features: Features, limits: &Limits) -> Option<String> {
+    if !computes {
+        return Some("compute shaders".into());
+    }
+    if !features.contains(Features::IMMEDIATES) {
+        return Some("immediate data (push constants)".into());
+    }
     let needs = [
         (limits.max_compute_invocations_per_workgroup, 64, "compute workgroups of 64"),
         (limits.max_storage_buffers_per_shader_stage, 8, "8 storage buffers a stage"),
@@ -184,11 +197,18 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_named() {
-        assert_eq!(missing(&Limits::default()), Some("64 bytes of immediate data (it has 0)".into()));
+        let needs = |limits: &Limits| missing(true, Features::IMMEDIATES, limits);
+        assert_eq!(needs(&Limits::default()), Some("64 bytes of immediate data (it has 0)".into()));
         let mut limits = Limits { max_immediate_size: 128, ..Limits::default() };
-        assert_eq!(missing(&limits), None);
+        assert_eq!(needs(&limits), None);
         limits.max_compute_invocations_per_workgroup = 0;
-        assert_eq!(missing(&limits), Some("compute workgroups of 64 (it has 0)".into()));
+        assert_eq!(needs(&limits), Some("compute workgroups of 64 (it has 0)".into()));
+        limits = Limits::downlevel_webgl2_defaults();
+        assert_eq!(missing(false, Features::IMMEDIATES, &limits), Some("compute shaders".into()));
+        let reason = missing(true, Features::empty(), &limits);
+        assert_eq!(reason, Some("immediate data (push constants)".into()));
+        let sentence = GpuError::Lacks { adapter: "an old card".into(), what: "compute shaders".into() };
+        assert_eq!(sentence.to_string(), "the adapter an old card cannot be used: it lacks compute shaders");
     }
 
     #[test]

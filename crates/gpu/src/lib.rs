@@ -9,7 +9,7 @@ mod draw;
 mod error;
 mod evaluate;
 mod exact;
-mod host_grid;
+mod host;
 mod kernels;
 mod layout;
 mod real;
@@ -25,7 +25,7 @@ pub use draw::{
 pub use error::GpuError;
 pub use evaluate::{Evaluated, Evaluation, Evaluator, OnDevice, Search, Variant, Wanted, evaluate_twin};
 pub use exact::{ExactFace, ExactModel, ExactPart, exact_model};
-pub use host_grid::{HIGHEST_DEGREE, host_grid, host_peaks};
+pub use host::{HIGHEST_DEGREE, HostPeaks, HostSurface, host_peaks};
 pub use real::Real;
 pub use samples::{Request, Samples, sorted_by_span};
 pub use shaders::{SHADERS, Shader};

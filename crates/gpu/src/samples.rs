@@ -67,8 +67,8 @@ pub struct Samples<R> {
     points: usize,
 }
 
-/// Points of one head at most, so that a grid of any size can be cut between heads.
-const HEAD_POINTS: usize = 1 << 19;
+/// Points of one head at most: outputs are cut between heads, whatever the size of a grid.
+const HEAD_POINTS: usize = 1 << 16;
 
 impl<R: Real> Samples<R> {
     /// Prepares requests; spans are found here.
@@ -253,7 +253,7 @@ impl<R: Real> RowTables<R> {
                     span: degree(pack[0]),
                     window: tables.windows.len() as u32 / 4,
                     basis: basis / 4,
-                    step: 0,
+                    step: 1,
                 });
                 for (lane, &row) in pack.iter().enumerate() {
                     let span = samples.row_spans[row];

@@ -31,8 +31,8 @@ macro_rules! drawing {
 }
 
 macro_rules! kernel {
-    ($bindings:expr, $name:literal $(, $before:literal)*) => {
-        Shader { name: $name, files: &[$(file!($before),)* file!($name)], bindings: $bindings, generic: true }
+    ($bindings:expr, $name:literal, [$($file:literal),*]) => {
+        Shader { name: $name, files: &[$(file!($file)),*], bindings: $bindings, generic: true }
     };
 }
 
@@ -40,17 +40,26 @@ macro_rules! kernel {
 const POINT_BINDINGS: &[(u32, bool)] =
     &[(0, true), (1, true), (2, true), (3, true), (4, true), (5, true), (6, true), (7, false)];
 
-pub(crate) const BASIS_INDEXED: Shader =
-    kernel!(&[(2, true), (3, true), (4, true), (6, true), (7, false)], "basis_indexed", "common");
-pub(crate) const BASIS_UNPACKED: Shader =
-    kernel!(&[(2, true), (3, true), (4, true), (7, false)], "basis_unpacked", "common");
+pub(crate) const BASIS_INDEXED: Shader = kernel!(
+    &[(2, true), (3, true), (4, true), (6, true), (7, false)],
+    "basis_indexed",
+    ["common", "basis_pass", "basis_indexed"]
+);
+pub(crate) const BASIS_UNPACKED: Shader = kernel!(
+    &[(2, true), (3, true), (4, true), (7, false)],
+    "basis_unpacked",
+    ["common", "basis_pass", "basis_unpacked"]
+);
 pub(crate) const BASIS_PACKED: Shader =
-    kernel!(&[(2, true), (4, true), (7, false)], "basis_packed", "common");
-pub(crate) const TENSOR: Shader = kernel!(POINT_BINDINGS, "tensor", "common", "samples");
-pub(crate) const DIRECT: Shader = kernel!(POINT_BINDINGS, "direct", "common", "samples");
-pub(crate) const BERNSTEIN: Shader = kernel!(POINT_BINDINGS, "bernstein", "common", "samples");
-pub(crate) const FIND_SPANS: Shader =
-    kernel!(&[(0, true), (1, true), (2, false), (5, true), (7, false)], "find_spans", "common");
+    kernel!(&[(2, true), (4, true), (7, false)], "basis_packed", ["common", "basis_pass", "basis_packed"]);
+pub(crate) const TENSOR: Shader = kernel!(POINT_BINDINGS, "tensor", ["common", "samples", "sums", "tensor"]);
+pub(crate) const DIRECT: Shader = kernel!(POINT_BINDINGS, "direct", ["common", "samples", "sums", "direct"]);
+pub(crate) const BERNSTEIN: Shader = kernel!(POINT_BINDINGS, "bernstein", ["common", "samples", "bernstein"]);
+pub(crate) const FIND_SPANS: Shader = kernel!(
+    &[(0, true), (1, true), (2, false), (5, true), (7, false)],
+    "find_spans",
+    ["common", "find_spans"]
+);
 pub(crate) const FACES: Shader = drawing!("faces");
 pub(crate) const LINES: Shader = drawing!("lines");
 pub(crate) const EXACT: Shader = Shader {

@@ -266,12 +266,15 @@ impl SurfaceEntry {
     /// Each basis function carries at most 4 roundings a level, each product and sum of the two loops one, the
     /// division three; they are relative because no term is negative, and hit numerator and denominator: 2 (4 (p + q) +
     /// p + q + 8) units. A rounded parameter moves the point by the derivative within the span, at most 2 p ρ for weights
-    /// between 1 and ρ, times half a unit; rounded knots count as much again.
+    /// between 1 and ρ, times half a unit; rounded knots count as much again. What comes before the kernel, in the model's
+    /// own coordinates and double precision, costs as many of its units of the surface's distance from the origin: all
+    /// that is left of a surface that is as small as those.
     pub fn point_bound<R: Real>(&self) -> f64 {
         let n = (self.degree[0] + self.degree[1]) as f64;
         let units = 10.0 * n + 16.0 + 4.0 * n * self.weight_ratio;
         // Local coordinates reach √3 from the middle.
-        self.frame.size * 3.0_f64.sqrt() * units * R::UNIT
+        let radius = self.frame.size * 3.0_f64.sqrt();
+        units * (radius * R::UNIT + (self.frame.middle.length() + radius) * f64::UNIT)
     }
 }
 

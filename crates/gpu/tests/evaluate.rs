@@ -3,8 +3,8 @@
 mod common;
 
 use chordal_gpu::{
-    Evaluator, GpuError, OnDevice, Real, Request, Samples, Search, SurfaceSet, Variant, Wanted,
-    evaluate_twin, sorted_by_span,
+    DeviceChoice, Evaluator, Gpu, GpuError, OnDevice, Real, Request, Samples, Search, SurfaceSet, Variant,
+    Wanted, evaluate_twin, sorted_by_span,
 };
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, NurbsSurface, Range};
 use common::{Random, gpu};
@@ -105,6 +105,33 @@ fn single_precision_keeps_its_bound() {
             set.entries()[worst.1].degree
         );
     }
+}
+
+/// The crate `nurbs` has passes of its own, over tables of the file's knots: twins of the paper's layouts agree with them.
+#[test]
+fn twins_agree_with_the_passes_of_nurbs() {
+    let mut random = Random(10);
+    let surfaces = common::zoo(&mut random);
+    let set = set_of::<f64>(&surfaces);
+    let requests = grids(&set, &mut random);
+    let samples = Samples::new(&set, &requests).unwrap();
+    let mut compared = 0;
+    for variant in Variant::ALL.into_iter().filter(|v| v.has_passes()) {
+        let found = evaluate_twin(&set, &samples, variant, Wanted::Points, Search::Host).unwrap();
+        for (index, (surface, request)) in surfaces.iter().zip(&requests).enumerate() {
+            let Request::Grid { us, vs, .. } = request else { unreachable!() };
+            let entry = &set.entries()[index];
+            let theirs = surface.points_by_passes(us, vs);
+            assert_eq!(theirs.len(), samples.range(index).len());
+            for (k, theirs) in samples.range(index).zip(theirs) {
+                let p = entry.frame.middle + DVec3::from_slice(&found[3 * k..3 * k + 3]) * entry.frame.size;
+                let ratio = p.distance(theirs) / entry.point_bound::<f64>();
+                assert!(ratio <= 1.0, "{variant:?} degree {:?}: {ratio} of the bound", entry.degree);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 3 * 100 * 4, "{compared}");
 }
 
 /// Derivatives and normals in double precision are those of the crate `nurbs`.
@@ -274,4 +301,73 @@ fn large_grids_are_split_between_bindings() {
         let exact = surface.point(domain.min + domain.size() * at);
         assert!(p.distance(exact) <= entry.point_bound::<f32>(), "{k}");
     }
+}
+
+/// A device that binds little at once: points are split, what cannot be is refused by name, nothing is cut off.
+#[test]
+fn what_exceeds_a_binding_is_split_or_refused() {
+    let limit = 8 << 20;
+    let small = Gpu::open_within(DeviceChoice::Best, limit).expect("a device");
+    assert_eq!(small.binding_limit(), limit);
+    let mut random = Random(8);
+    let surface = common::surface(&mut random, [2, 3], [3, 2]);
+    let set = set_of::<f32>(std::slice::from_ref(&surface));
+    let grid = |n: usize| Samples::new(&set, &[Request::even_grid(&set, 0, n, n)]).unwrap();
+    let evaluator = |variant| Evaluator::<f32>::new(&small, variant, Search::Host).unwrap();
+    // 12 MB of points.
+    let samples = grid(1000);
+    let direct = evaluator(Variant::Direct);
+    let on_device = OnDevice::upload(&small, &set).unwrap();
+    let evaluation = direct.prepare(&small, &on_device, &set, &samples, Wanted::Points).unwrap();
+    assert!(evaluation.buffers().count() > 1);
+    direct.run(&small, &evaluation).unwrap();
+    let found = evaluation.read(&small).unwrap().values;
+    let whole = Evaluator::<f32>::new(gpu(), Variant::Direct, Search::Host)
+        .unwrap()
+        .evaluate(gpu(), &set, &samples, Wanted::Points)
+        .unwrap();
+    assert_eq!(found, whole.values);
+    // 84 bytes a point: no grid is so large that its heads do not fit.
+    let second = direct.evaluate(&small, &set, &samples, Wanted::Second).unwrap();
+    assert_eq!(second.values.len(), 21 * 1_000_000);
+    // Basis functions of all rows of a list, 300,000 parameters each way.
+    let uvs = vec![surface.domain().center(); 300_000];
+    let list = Samples::new(&set, &[Request::Points { surface: 0, uvs }]).unwrap();
+    let refused = evaluator(Variant::Indexed).evaluate(&small, &set, &list, Wanted::Points).err();
+    let Some(GpuError::TooLarge { what, bytes, limit: said, .. }) = &refused else { panic!("{refused:?}") };
+    assert!(*bytes > limit && *said == limit, "{what}: {bytes} of {said}");
+    // Control points of a set that is too large.
+    let mut large = SurfaceSet::<f32>::new();
+    let many = common::surface(&mut random, [3, 3], [200, 200]);
+    for _ in 0..20 {
+        large.push_surface(&many);
+    }
+    let refused = OnDevice::upload(&small, &large).err();
+    assert!(
+        matches!(&refused, Some(GpuError::TooLarge { what, .. }) if what == "the control points of the model")
+    );
+}
+
+/// A device that goes away is an error at the next call, whatever that is.
+#[test]
+fn a_lost_device_is_an_error() {
+    let mut random = Random(9);
+    let set = set_of::<f32>(&[common::surface(&mut random, [3, 3], [2, 2])]);
+    let samples = Samples::new(&set, &grids(&set, &mut random)).unwrap();
+    let doomed = Gpu::open(DeviceChoice::Best).expect("a device");
+    let evaluator = Evaluator::<f32>::new(&doomed, Variant::Bernstein, Search::Host).unwrap();
+    let on_device = OnDevice::upload(&doomed, &set).unwrap();
+    let evaluation = evaluator.prepare(&doomed, &on_device, &set, &samples, Wanted::Points).unwrap();
+    evaluator.run(&doomed, &evaluation).unwrap();
+    doomed.device.destroy();
+    let lost = |what: &str, result: Option<GpuError>| {
+        assert!(matches!(result, Some(GpuError::Lost(_))), "{what}: {result:?}");
+    };
+    lost("reading", evaluation.read(&doomed).err());
+    lost("running", evaluator.run(&doomed, &evaluation).err());
+    lost("an edit", on_device.update(&doomed, &set, 0).err());
+    lost("uploading", OnDevice::upload(&doomed, &set).err());
+    lost("all", evaluator.evaluate(&doomed, &set, &samples, Wanted::Points).err());
+    lost("compiling", Evaluator::<f32>::new(&doomed, Variant::Direct, Search::Host).err());
+    lost("waiting", doomed.wait().err());
 }

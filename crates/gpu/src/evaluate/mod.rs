@@ -204,8 +204,7 @@ fn basis_twin<R: Real>(
             Variant::Indexed => basis_indexed(params, rows, &set.spans, &set.windows, ts, &mut basis),
             Variant::Unpacked => basis_unpacked(params, rows, &set.spans, windows, &mut basis),
             Variant::Packed => {
-                let lanes = bytemuck::cast_slice_mut::<R, [R; 4]>(&mut basis);
-                basis_packed(params, &plan.tables.packs, bytemuck::cast_slice(windows), lanes);
+                basis_packed(params, &plan.tables.packs, windows, &mut basis);
             }
             Variant::Direct | Variant::Bernstein => {}
         }

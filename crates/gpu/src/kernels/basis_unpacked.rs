@@ -1,6 +1,7 @@
 //! Twin of `basis_unpacked.wgsl`: every row carries a copy of its parameter and its knots.
 
-use super::basis_indexed::pass;
+use super::basis_pass::{PassRow, pass};
+use super::vector::V1;
 use crate::Real;
 use crate::layout::{Params, Row, Span};
 
@@ -11,6 +12,13 @@ pub(crate) fn basis_unpacked<R: Real>(
     windows: &[R],
     basis: &mut [R],
 ) {
-    let knots = |_: usize, row: Row| (windows[row.window as usize], &windows[row.window as usize + 1..]);
-    pass(params, rows, spans, knots, basis);
+    let windows: &[V1<R>] = bytemuck::cast_slice(windows);
+    let rows = rows.iter().map(|row| PassRow {
+        degree: spans[row.span as usize].degree as usize,
+        t: windows[row.window as usize],
+        window: &windows[row.window as usize + 1..],
+        basis: row.basis as usize,
+        step: row.step as usize,
+    });
+    pass(params, rows, bytemuck::cast_slice_mut(basis));
 }

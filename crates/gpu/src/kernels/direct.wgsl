@@ -1,4 +1,4 @@
-// Basis functions and sum in one kernel: every thread climbs from degree 0 in its own memory. Thread: one point.
+// Functions in the kernel that sums: every thread climbs from degree 0 in its own memory.
 
 @group(0) @binding(6) var<storage, read> ts: array<real>;
 
@@ -6,8 +6,11 @@
 const PLANE: u32 = 101u;
 alias Basis = array<real, 303>;
 
+var<private> bu: Basis;
+var<private> bv: Basis;
+
 // The recursion in place; derivatives by differencing the last levels. Denominators hold the span, so none is 0.
-fn fill(span: Span, t: real, planes: u32, basis: ptr<function, Basis>) {
+fn fill(span: Span, t: real, planes: u32, basis: ptr<private, Basis>) {
     let p = span.degree;
     for (var j = 0u; j <= p; j++) {
         (*basis)[PLANE + j] = real(0);
@@ -50,64 +53,15 @@ fn fill(span: Span, t: real, planes: u32, basis: ptr<function, Basis>) {
     }
 }
 
-@compute @workgroup_size(64)
-fn points(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let sample = sample_of(group, local);
-    if !sample.valid {
-        return;
-    }
-    let head = heads[sample.head];
-    let span_u = spans[rows[sample.row_u].span];
-    let span_v = spans[rows[sample.row_v].span];
-    var bu: Basis;
-    var bv: Basis;
-    fill(span_u, ts[sample.row_u], 1u, &bu);
-    fill(span_v, ts[sample.row_v], 1u, &bv);
-    let zero = real4(real(0), real(0), real(0), real(0));
-    var sum = zero;
-    for (var i = 0u; i <= span_u.degree; i++) {
-        let start = head.net + (span_u.first + i) * head.stride + span_v.first;
-        var line = zero;
-        for (var j = 0u; j <= span_v.degree; j++) {
-            line = line + net[start + j] * bv[j];
-        }
-        sum = sum + line * bu[i];
-    }
-    write_point(sample, sum);
-}
-
-@compute @workgroup_size(64)
-fn jets(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let sample = sample_of(group, local);
-    if !sample.valid {
-        return;
-    }
-    let head = heads[sample.head];
-    let span_u = spans[rows[sample.row_u].span];
-    let span_v = spans[rows[sample.row_v].span];
-    var bu: Basis;
-    var bv: Basis;
+fn prepare(sample: Sample, span_u: Span, span_v: Span) {
     fill(span_u, ts[sample.row_u], params.planes, &bu);
     fill(span_v, ts[sample.row_v], params.planes, &bv);
-    let zero = real4(real(0), real(0), real(0), real(0));
-    var jet = Jet(zero, zero, zero, zero, zero, zero);
-    for (var i = 0u; i <= span_u.degree; i++) {
-        let start = head.net + (span_u.first + i) * head.stride + span_v.first;
-        var line0 = zero;
-        var line1 = zero;
-        var line2 = zero;
-        for (var j = 0u; j <= span_v.degree; j++) {
-            let h = net[start + j];
-            line0 = line0 + h * bv[j];
-            line1 = line1 + h * bv[PLANE + j];
-            line2 = line2 + h * bv[2u * PLANE + j];
-        }
-        jet.h00 = jet.h00 + line0 * bu[i];
-        jet.h01 = jet.h01 + line1 * bu[i];
-        jet.h02 = jet.h02 + line2 * bu[i];
-        jet.h10 = jet.h10 + line0 * bu[PLANE + i];
-        jet.h11 = jet.h11 + line1 * bu[PLANE + i];
-        jet.h20 = jet.h20 + line0 * bu[2u * PLANE + i];
-    }
-    write_jet(sample, jet);
+}
+
+fn along_u(sample: Sample, degree: u32, plane: u32, column: u32) -> real {
+    return bu[plane * PLANE + column];
+}
+
+fn along_v(sample: Sample, degree: u32, plane: u32, column: u32) -> real {
+    return bv[plane * PLANE + column];
 }

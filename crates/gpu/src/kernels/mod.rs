@@ -3,6 +3,7 @@
 
 pub(crate) mod basis_indexed;
 pub(crate) mod basis_packed;
+mod basis_pass;
 pub(crate) mod basis_unpacked;
 pub(crate) mod bernstein;
 pub(crate) mod direct;

@@ -1,15 +1,16 @@
-//! WGSL's vectors of three and four, component by component.
+//! WGSL's numbers and its vectors of three and four, component by component.
 
+use super::basis_pass::Value;
 use crate::Real;
-
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct V3<R>(pub [R; 3]);
-
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct V4<R>(pub [R; 4]);
+use bytemuck::{Pod, Zeroable};
 
 macro_rules! vector {
-    ($name:ident, $n:literal) => {
+    ($(#[$what:meta])* $name:ident, $n:literal) => {
+        $(#[$what])*
+        #[repr(transparent)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+        pub(crate) struct $name<R>(pub [R; $n]);
+
         impl<R: Real> std::ops::Add for $name<R> {
             type Output = Self;
             fn add(self, other: Self) -> Self {
@@ -28,8 +29,25 @@ macro_rules! vector {
                 Self(std::array::from_fn(|i| self.0[i] * by))
             }
         }
+        impl<R: Real> Value<R> for $name<R> {
+            fn splat(value: R) -> Self {
+                Self([value; $n])
+            }
+            fn times(self, other: Self) -> Self {
+                Self(std::array::from_fn(|i| self.0[i] * other.0[i]))
+            }
+            fn quotient(self, by: Self) -> Self {
+                let zero = R::zero();
+                Self(std::array::from_fn(|i| if by.0[i] == zero { zero } else { self.0[i] / by.0[i] }))
+            }
+        }
     };
 }
+vector!(
+    /// A number by itself, where code is shared with vectors.
+    V1,
+    1
+);
 vector!(V3, 3);
 vector!(V4, 4);
 
@@ -41,9 +59,4 @@ impl<R: Real> V4<R> {
     pub fn w(self) -> R {
         self.0[3]
     }
-}
-
-/// The product of two vectors, lane by lane.
-pub(crate) fn lanes<R: Real>(a: [R; 4], b: [R; 4], f: impl Fn(R, R) -> R) -> [R; 4] {
-    std::array::from_fn(|i| f(a[i], b[i]))
 }
