@@ -9,6 +9,7 @@ import math
 import struct
 from pathlib import Path
 
+import iv_pictures  # noqa: F401  (registers its files)
 from scene_large import scene
 from written import BAD, GOOD, bad, good, write_all
 

@@ -359,6 +359,9 @@ pub struct RenderArgs {
     pub zoom: ZoomArg,
     #[arg(long, value_enum, default_value = "mesh")]
     pub mode: ModeArg,
+    /// With --mode nurbs: how faces are trimmed.
+    #[arg(long, value_enum, default_value = "exact")]
+    pub trim: TrimArg,
     #[arg(long, value_enum, default_value = "shaded")]
     pub style: StyleArg,
     /// Leave out the lines of the style.
@@ -404,6 +407,14 @@ fn parse_zoom(text: &str) -> Result<ZoomArg, String> {
         Ok(zoom) if zoom > 0.0 && zoom.is_finite() => Ok(ZoomArg(zoom)),
         _ => Err("not a number above 0".into()),
     }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum TrimArg {
+    /// Every sample of a pixel against the curves, sharp at any zoom.
+    Exact,
+    /// By a texture in which the loops are counted even and odd.
+    Texture,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -20,8 +20,10 @@ pub fn run(args: &RenderArgs) -> Exit {
 #[cfg(feature = "render")]
 mod drawing {
     use super::{Exit, RenderArgs, say};
-    use crate::args::{DeviceArg, ModeArg, ProjectionArg, StyleArg};
-    use chordal::gpu::{Background, DeviceChoice, Projection, RenderOptions, SectionPlane, Style, View};
+    use crate::args::{DeviceArg, ModeArg, ProjectionArg, StyleArg, TrimArg};
+    use chordal::gpu::{
+        Background, DeviceChoice, Projection, RenderOptions, SectionPlane, Style, Trim, View,
+    };
     use chordal::nurbs::DVec3;
     use chordal::{RenderJob, RenderMode, Rendered};
 
@@ -72,7 +74,11 @@ mod drawing {
             })
             .with_lines(!args.no_lines)
             .with_background(background)
-            .with_section(section);
+            .with_section(section)
+            .with_trim(match args.trim {
+                TrimArg::Exact => Trim::Exact,
+                TrimArg::Texture => Trim::Texture,
+            });
         Ok(RenderJob {
             input: args.input.clone(),
             output: args.output.clone(),
@@ -108,8 +114,10 @@ mod drawing {
         let report = &rendered.report;
         let what = match rendered.evaluated {
             None => format!("{} triangles of {} faces", report.triangles, report.faces.total),
-            Some(e) if e.meshed > 0 => format!("{} points ({} faces drawn as triangles)", e.points, e.meshed),
-            Some(e) => format!("{} points of {} faces", e.points, report.faces.total),
+            Some(e) if e.meshed > 0 => {
+                format!("{} points of {} faces ({} drawn as triangles)", e.points, e.drawn, e.meshed)
+            }
+            Some(e) => format!("{} points of {} faces", e.points, e.drawn),
         };
         say(&format!("{}: {what}, drawn by {}", args.output.display(), rendered.adapter));
         if let Some(legend) = rendered.legend {

@@ -2,8 +2,8 @@
 
 use crate::{Job, JobError, JobOptions, OnProgress, Report, run, whole_file};
 use chordal_gpu::{
-    DeviceChoice, ExactRenderer, Gpu, GpuError, Legend, RenderOptions, Renderer, Style, exact_model,
-    mesh_scenery,
+    DeviceChoice, ExactRenderer, ExactScene, Gpu, GpuError, Legend, RenderOptions, Renderer, Style,
+    exact_model, mesh_scenery,
 };
 use chordal_tessellate::Cancel;
 use std::fmt;
@@ -24,6 +24,8 @@ pub enum RenderMode {
 pub struct Evaluated {
     /// Points evaluated on the device.
     pub points: usize,
+    /// Faces drawn from them; the others are beyond the picture or show their backs.
+    pub drawn: usize,
     /// Faces without an exact form, drawn as triangles.
     pub meshed: usize,
 }
@@ -103,10 +105,10 @@ pub fn render(job: &RenderJob) -> Result<Rendered, RenderError> {
     } else {
         let exact = exact_model(scene, model);
         let faces = ExactRenderer::new(&gpu)?;
-        let (picture, points) =
-            renderer.render_exact(&gpu, (&faces, &exact), (scene, model), &job.picture)?;
         let meshed = exact.parts.iter().map(|p| p.meshed.len()).sum();
-        (picture, None, Some(Evaluated { points, meshed }))
+        let mut on_device = ExactScene::new(&gpu, exact, (scene, model), job.picture.style)?;
+        let (picture, counts) = renderer.render_exact(&gpu, &faces, &mut on_device, &job.picture)?;
+        (picture, None, Some(Evaluated { points: counts.points, drawn: counts.faces, meshed }))
     };
     write(&job.output, &picture.to_png()?)?;
     Ok(Rendered { adapter: gpu.name().to_owned(), legend, evaluated: points, report: outcome.report })

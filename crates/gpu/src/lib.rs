@@ -19,8 +19,9 @@ mod surfaces;
 
 pub use device::{DeviceChoice, Gpu};
 pub use draw::{
-    Background, Camera, ExactRenderer, Legend, PIXEL_ERROR, Picture, Placed, Projection, RenderOptions,
-    Renderer, Scenery, SectionPlane, Shape, Style, Vertex, View, mesh_scenery, scene_outline,
+    Background, Camera, ExactRenderer, ExactScene, FrameCounts, Legend, PIXEL_ERROR, Picture, Placed,
+    Projection, RenderOptions, Renderer, Scenery, SectionPlane, Shape, Style, Trim, Vertex, View,
+    mesh_scenery, scene_outline,
 };
 pub use error::GpuError;
 pub use evaluate::{Evaluated, Evaluation, Evaluator, OnDevice, Search, Variant, Wanted, evaluate_twin};

@@ -73,6 +73,13 @@ pub(crate) const EXACT: Shader = Shader {
     generic: false,
 };
 
+pub(crate) const TRIM_TEXTURE: Shader = Shader {
+    name: "trim_texture",
+    files: &[include_str!("draw/trim_texture.wgsl")],
+    bindings: &[],
+    generic: false,
+};
+
 /// All of them.
 pub const SHADERS: &[Shader] = &[
     BASIS_INDEXED,
@@ -85,6 +92,7 @@ pub const SHADERS: &[Shader] = &[
     FACES,
     LINES,
     EXACT,
+    TRIM_TEXTURE,
 ];
 
 impl Shader {

@@ -85,11 +85,6 @@ impl<R: Real> SurfaceSet<R> {
         self.wants_bezier
     }
 
-    /// Bytes of the Bézier nets.
-    pub(crate) fn bezier_bytes(&self) -> u64 {
-        (self.bezier.len() * size_of::<[R; 4]>()) as u64
-    }
-
     fn patches(&self, surface: &NurbsSurface) -> Vec<(UvBox, BezierPatch)> {
         let everywhere = UvBox::new(DVec2::NEG_INFINITY, DVec2::INFINITY);
         if self.wants_bezier { surface.bezier_patches(everywhere) } else { Vec::new() }

@@ -5,8 +5,8 @@
 mod common;
 
 use chordal::gpu::{
-    Background, ExactRenderer, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style, View,
-    exact_model, mesh_scenery,
+    Background, ExactRenderer, ExactScene, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style,
+    Trim, View, exact_model, mesh_scenery,
 };
 use chordal::nurbs::DVec3;
 use chordal::{Job, JobOptions, Outcome, Tolerance};
@@ -33,6 +33,11 @@ fn drawn(outcome: &Outcome, options: &RenderOptions) -> Picture {
         .expect("shaders compile")
         .render(gpu(), &outcome.scene, &scenery, options)
         .expect("a picture")
+}
+
+fn on_device(outcome: &Outcome) -> ExactScene<'_> {
+    let (scene, model) = (&outcome.scene, &outcome.model);
+    ExactScene::new(gpu(), exact_model(scene, model), (scene, model), Style::Shaded).expect("it fits")
 }
 
 fn small() -> RenderOptions {
@@ -145,15 +150,39 @@ fn exact_surfaces_look_like_a_fine_mesh() {
     let renderer = Renderer::new(gpu()).unwrap();
     for model in models {
         let outcome = meshed(model, 0.01);
-        let exact = exact_model(&outcome.scene, &outcome.model);
+        let mut exact = on_device(&outcome);
         for zoom in [1.0, 5.0] {
             let options = small().with_zoom(zoom);
-            let (picture, points) = renderer
-                .render_exact(gpu(), (&faces, &exact), (&outcome.scene, &outcome.model), &options)
-                .unwrap();
-            assert!(points > 0);
+            let (picture, counts) = renderer.render_exact(gpu(), &faces, &mut exact, &options).unwrap();
+            assert!(counts.faces > 0);
             let share = picture.difference(&drawn(&outcome, &options), THRESHOLD);
             assert!(share < 0.003, "{model} at zoom {zoom}: {:.2} % of the pixels differ", 100.0 * share);
+        }
+    }
+}
+
+/// Both ways of trimming look alike where texels are finer than pixels, and like a fine mesh: deep notches, holes with islands, windows.
+#[test]
+fn both_trims_look_alike() {
+    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    for model in [
+        "iv/duck.iv",
+        "iv/concave_trim.iv",
+        "iv/airplane_in_a_box.iv",
+        "nested_loops.step",
+        "sphere_holes.step",
+    ] {
+        let outcome = meshed(model, 0.01);
+        let mut exact = on_device(&outcome);
+        for zoom in [1.0, 4.0] {
+            let options = small().with_zoom(zoom);
+            let mut of =
+                |trim| renderer.render_exact(gpu(), &faces, &mut exact, &options.with_trim(trim)).unwrap().0;
+            let (curves, texture) = (of(Trim::Exact), of(Trim::Texture));
+            let share = curves.difference(&texture, THRESHOLD);
+            assert!(share < 0.001, "{model} at zoom {zoom}: {:.2} % of the pixels differ", 100.0 * share);
+            let share = texture.difference(&drawn(&outcome, &options), THRESHOLD);
+            assert!(share < 0.003, "{model} at zoom {zoom}: {:.2} % differ from the mesh", 100.0 * share);
         }
     }
 }
@@ -167,11 +196,10 @@ fn neighbours_show_no_crack() {
     let magenta = "#ff00ff".parse().unwrap();
     for model in ["bracket.step", "fillets.step", "blade.step", "fillet_torus.step"] {
         let outcome = meshed(model, 0.2);
-        let exact = exact_model(&outcome.scene, &outcome.model);
+        let mut exact = on_device(&outcome);
         for zoom in [1.0, 3.3, 11.0] {
             let options = small().with_zoom(zoom).with_lines(false).with_background(magenta);
-            let scene = (&outcome.scene, &outcome.model);
-            let (picture, _) = renderer.render_exact(gpu(), (&faces, &exact), scene, &options).unwrap();
+            let (picture, _) = renderer.render_exact(gpu(), &faces, &mut exact, &options).unwrap();
             let solid = drawn(&meshed(model, 0.005), &options);
             let (w, h) = (i64::from(picture.width), i64::from(picture.height));
             let is_background = |p: [u8; 4]| p[0] > p[1].saturating_add(60);

@@ -12,11 +12,17 @@ struct Face {
     bands: u32,
     turn: f32,           // -1: the outside is against the surface's normal
     border: u32,         // number of its first border point
+    rectangle: vec4<f32>,    // its trim texture: corner and size in texture coordinates
+    half_texel: vec2<f32>,   // of the unit square
+    plane: u32,              // 4 layer + channel
+    spare: u32,
 }
 
 @group(0) @binding(2) var<storage, read> faces: array<Face>;
 @group(0) @binding(3) var<storage, read> points: array<f32>;
 @group(0) @binding(4) var<storage, read> places: array<f32>;
+@group(0) @binding(7) var trims: texture_2d_array<f32>;
+@group(0) @binding(8) var trim_sampler: sampler;
 
 var<immediate> face_index: u32;
 
@@ -68,6 +74,29 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
 @fragment
 fn fragment(in: ExactOut) -> @location(0) vec4<f32> {
     if is_cut(in.p) || !inside(in.trim.x, in.trim.y, in.place) {
+        discard;
+    }
+    if view.fill.a > 0.0 {
+        return vec4<f32>(view.fill.rgb, 1.0);
+    }
+    return vec4<f32>(lit(in.color, in.normal, in.p), 1.0);
+}
+
+// The same by the trim texture. No answer is interpolated with a neighbour's rectangle.
+fn inside_texture(place: vec2<f32>) -> bool {
+    if faces[face_index].bands == 0u {
+        return true;
+    }
+    let rectangle = faces[face_index].rectangle;
+    let half = faces[face_index].half_texel;
+    let plane = faces[face_index].plane;
+    let at = rectangle.xy + rectangle.zw * clamp(place, half, 1.0 - half);
+    return textureSampleLevel(trims, trim_sampler, at, plane / 4u, 0.0)[plane % 4u] >= 0.5;
+}
+
+@fragment
+fn fragment_texture(in: ExactOut) -> @location(0) vec4<f32> {
+    if is_cut(in.p) || !inside_texture(in.place) {
         discard;
     }
     if view.fill.a > 0.0 {

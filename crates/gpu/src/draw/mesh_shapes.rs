@@ -126,6 +126,17 @@ pub fn scene_outline(scene: &Scene) -> Vec<DVec3> {
     points
 }
 
+/// Boxes that hold the parts: their meshes, and a margin for the surfaces between the vertices.
+pub(crate) fn shape_boxes(scene: &Scene) -> Vec<[DVec3; 2]> {
+    let of_part = |part: &ScenePart| {
+        let (low, high) = camera::bounds(part_points(part));
+        // Meshes are far finer than a tenth of their part.
+        let margin = DVec3::splat(0.1 * low.distance(high));
+        [low - margin, high + margin]
+    };
+    scene.parts.iter().map(of_part).collect()
+}
+
 pub(crate) fn local(p: DVec3, middle: DVec3) -> [f32; 3] {
     (p - middle).as_vec3().to_array()
 }

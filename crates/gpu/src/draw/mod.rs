@@ -1,15 +1,27 @@
 //! Drawing: scenes of meshes or of exact surfaces, without a window, into a picture.
 
 mod camera;
+mod choice;
 mod exact;
+mod exact_scene;
+mod generation;
 mod measures;
+mod mesh_groups;
 mod mesh_shapes;
 mod picture;
+mod pipelines;
 mod renderer;
+mod residents;
 mod shapes;
+mod target;
+mod trim_texture;
+mod view_data;
+mod visible;
 
 pub use camera::{Camera, Projection, View};
-pub use exact::{ExactRenderer, PIXEL_ERROR};
+pub use choice::PIXEL_ERROR;
+pub use exact::ExactRenderer;
+pub use exact_scene::{ExactScene, FrameCounts};
 pub use mesh_shapes::{Legend, mesh_scenery, scene_outline};
 pub use picture::Picture;
 pub use renderer::Renderer;
@@ -79,6 +91,16 @@ pub struct SectionPlane {
     pub offset: f64,
 }
 
+/// How exact faces are trimmed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trim {
+    /// Every sample of a pixel against the curves themselves, at any zoom.
+    #[default]
+    Exact,
+    /// By a texture drawn for the view, in which loops are counted even and odd (Krishnamurthy, Khardekar, McMains 2009).
+    Texture,
+}
+
 /// How a picture is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -96,6 +118,10 @@ pub struct RenderOptions {
     pub lines: bool,
     pub background: Background,
     pub section: Option<SectionPlane>,
+    /// Of exact faces.
+    pub trim: Trim,
+    /// Leave out what the picture cannot show: faces beyond it, and backs of closed shells. Of exact faces.
+    pub reject: bool,
 }
 
 impl Default for RenderOptions {
@@ -110,6 +136,8 @@ impl Default for RenderOptions {
             lines: true,
             background: Background::LIGHT,
             section: None,
+            trim: Trim::Exact,
+            reject: true,
         }
     }
 }
@@ -141,6 +169,12 @@ impl RenderOptions {
     }
     pub fn with_section(self, section: Option<SectionPlane>) -> Self {
         Self { section, ..self }
+    }
+    pub fn with_trim(self, trim: Trim) -> Self {
+        Self { trim, ..self }
+    }
+    pub fn with_reject(self, reject: bool) -> Self {
+        Self { reject, ..self }
     }
 
     /// The camera for what is to be seen.

@@ -4,7 +4,7 @@ mod on_device;
 mod run;
 
 pub use on_device::OnDevice;
-pub(crate) use on_device::storage;
+pub(crate) use on_device::{empty_storage, storage};
 pub(crate) use run::read_back;
 pub use run::{Evaluated, Evaluation, Evaluator};
 

@@ -35,7 +35,9 @@ impl<'a> EdgeParameters<'a> {
         let ts = self.parameters[edge].as_ref()?;
         let curve = self.part.edges[edge].curve.as_ref()?;
         let length = ts[k + 1] - ts[k];
-        let [low, high] = [ts[k], ts[k + 1]].map(|t| curve.jet(t).d1 * length);
+        // From within: at a kink both sides have a derivative of their own.
+        let inset = 1e-6 * length;
+        let [low, high] = [ts[k] + inset, ts[k + 1] - inset].map(|t| curve.jet(t).d1 * length);
         // Of a closed edge of two samples the same pair stands for both ways round.
         Some(if self.mesh.edges[edge][k] == from { [low, high] } else { [-high, -low] })
     }

@@ -4,7 +4,7 @@
 //! among them. Between two samples of an edge the loop is not the chord but a cubic with the directions that the edge's
 //! curve has there, carried into the parameters; its distance from the true curve falls with the fourth power of theirs.
 
-use super::{Cubic, EdgeParameters};
+use super::{Cone, Cubic, EdgeParameters, normal_cone, outside_faces};
 use chordal_brep::{FaceGeometry, Model};
 use chordal_mesh::{FaceMesh, Rgba, Scene};
 use chordal_nurbs::{DVec2, DVec3, NurbsParameters, NurbsSurface, Surface, UvBox};
@@ -26,8 +26,39 @@ pub struct ExactFace {
     pub color: Option<Rgba>,
     /// The largest |S_uu|, |S_uv|, |S_vv| by native parameters, at samples with a margin.
     pub(crate) bends: [f64; 3],
+    /// The largest |S_u|, |S_v| there, times the sides of `uv`: how long the unit square's sides become.
+    pub(crate) stretch: [f64; 2],
     /// Native parameters of lines at which the surface may have a kink.
     pub(crate) kinks: [Vec<f64>; 2],
+    /// A box that holds the surface, in the part's units; `None` where weights allow none.
+    pub(crate) bounds: Option<[DVec3; 2]>,
+    /// Normals that all point out of a closed shell; `None` where the back may be seen or no cone is known.
+    pub(crate) outward: Option<Cone>,
+}
+
+impl ExactFace {
+    /// Takes another surface of the same shape of knots over the same parameters: how fine it must be sampled follows; its
+    /// back may be seen from now on.
+    pub(crate) fn replace_surface(&mut self, surface: &NurbsSurface) {
+        let over = Surface::Nurbs(surface.clone());
+        let low = self.parameters.nurbs_from_native(self.uv.min);
+        let high = self.parameters.nurbs_from_native(self.uv.max);
+        let domain = UvBox::from_points([low, high]);
+        let scale = domain.size() / self.uv.size();
+        let kinks = over.breaks(domain);
+        let (bends, stretch) = bends(&over, domain, [&kinks[0], &kinks[1]]);
+        let [uu, uv, vv] = bends;
+        let [kinks_u, kinks_v] = kinks;
+        self.kinks = [
+            kinks_u.into_iter().map(|t| self.parameters.u.native_from_nurbs(t)).collect(),
+            kinks_v.into_iter().map(|t| self.parameters.v.native_from_nurbs(t)).collect(),
+        ];
+        self.bends = [uu * scale.x * scale.x, uv * scale.x * scale.y, vv * scale.y * scale.y];
+        self.stretch = stretch;
+        self.bounds = bounds(surface);
+        self.outward = None;
+        self.surface = surface.clone();
+    }
 }
 
 /// A part's exact faces, and those that have no exact NURBS form and stay meshed.
@@ -49,6 +80,7 @@ pub fn exact_model(scene: &Scene, model: &Model) -> ExactModel {
         let mesh = &scene_part.mesh;
         let edges = EdgeParameters::new(part, mesh);
         let mut found = ExactPart::default();
+        let outside = outside_faces(mesh);
         for (index, (face, of_face)) in part.faces.iter().zip(&mesh.faces).enumerate() {
             if of_face.triangles.is_empty() {
                 continue;
@@ -60,6 +92,7 @@ pub fn exact_model(scene: &Scene, model: &Model) -> ExactModel {
             match exact {
                 Some(exact) => found.faces.push(ExactFace {
                     face: index,
+                    outward: outside[index].and_then(|area| Some(normal_cone(&exact.surface)?.towards(area))),
                     reversed: face.normal_reversed(),
                     color: scene_part.face_colors.get(index).copied().flatten(),
                     ..exact
@@ -80,16 +113,20 @@ fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters
     let nurbs = surface.to_nurbs(uv).ok()?;
     let parameters = surface.nurbs_parameters(uv).ok()?;
     let [kinks_u, kinks_v] = surface.breaks(uv);
+    let (bends, stretch) = bends(surface, uv, [&kinks_u, &kinks_v]);
     Some(ExactFace {
         face: 0,
+        bounds: bounds(&nurbs),
         surface: nurbs,
         parameters,
         uv,
         loops: loops(surface, of_face, edges, uv),
         reversed: false,
         color: None,
-        bends: bends(surface, uv, [&kinks_u, &kinks_v]),
+        bends,
+        stretch,
         kinks: [kinks_u, kinks_v],
+        outward: None,
     })
 }
 
@@ -158,22 +195,33 @@ fn carried(surface: &Surface, uv: DVec2, d: DVec3) -> Option<DVec2> {
     (area > 1e-12 * e * g).then_some(found).filter(|d| d.is_finite())
 }
 
-/// The largest second derivatives at a few samples of every span, and a fifth more.
-fn bends(surface: &Surface, uv: UvBox, kinks: [&[f64]; 2]) -> [f64; 3] {
+/// The box of the control points, which holds the surface where no weight is negative.
+fn bounds(surface: &NurbsSurface) -> Option<[DVec3; 2]> {
+    if surface.weights().is_some_and(|w| w.iter().any(|w| !(*w > 0.0))) {
+        return None;
+    }
+    let fold = |f: fn(DVec3, DVec3) -> DVec3| surface.points().iter().copied().reduce(f);
+    Some([fold(DVec3::min)?, fold(DVec3::max)?])
+}
+
+/// The largest second derivatives at a few samples of every span and a fifth more, and the largest first ones times the
+/// sides of the box.
+fn bends(surface: &Surface, uv: UvBox, kinks: [&[f64]; 2]) -> ([f64; 3], [f64; 2]) {
     let samples = |axis: usize| {
         let count = (4 * (kinks[axis].len() + 1)).clamp(9, 65);
         let (start, length) = (uv.min[axis], uv.size()[axis]);
         (0..count).map(move |k| start + length * ((k as f64 + 0.5) / count as f64)).collect::<Vec<_>>()
     };
     let (us, vs) = (samples(0), samples(1));
-    let mut found = [0.0_f64; 3];
+    let mut found = [0.0_f64; 5];
     for &u in &us {
         for &v in &vs {
             let jet = surface.jet(DVec2::new(u, v));
-            for (slot, d) in found.iter_mut().zip([jet.duu, jet.duv, jet.dvv]) {
+            for (slot, d) in found.iter_mut().zip([jet.duu, jet.duv, jet.dvv, jet.du, jet.dv]) {
                 *slot = slot.max(d.length());
             }
         }
     }
-    found.map(|d| if d.is_finite() { 1.2 * d } else { 0.0 })
+    let [uu, uv_, vv, u, v] = found.map(|d| if d.is_finite() { d } else { 0.0 });
+    ([uu, uv_, vv].map(|d| 1.2 * d), [u * uv.size().x, v * uv.size().y])
 }

@@ -9,9 +9,8 @@ use super::ExactFace;
 /// Points of one face at most; a view that asks for more sees the difference only where the face fills it many times.
 const MOST: f64 = 2048.0;
 
-/// The face's parameters along u and v, native, for an error in the part's units. Knot lines across which the surface
-/// has a kink are among them.
-pub(crate) fn grid(face: &ExactFace, error: f64) -> [Vec<f64>; 2] {
+/// Steps along u and v for an error in the part's units, before kinks are added.
+pub(crate) fn steps(face: &ExactFace, error: f64) -> [f64; 2] {
     let [uu, uv, vv] = face.bends;
     let ratio = if uu > 0.0 && vv > 0.0 { (uu / vv).sqrt() } else { 1.0 };
     let needs = |bend: f64, length: f64| (length * (bend / (4.0 * error)).sqrt()).ceil().clamp(1.0, MOST);
@@ -22,6 +21,12 @@ pub(crate) fn grid(face: &ExactFace, error: f64) -> [Vec<f64>; 2] {
         let larger = usize::from(steps[1] > steps[0]);
         steps[larger] = (0.5 * steps[larger]).ceil();
     }
+    steps
+}
+
+/// The face's parameters along u and v, native, in so many steps. Knot lines across which the surface has a kink are among
+/// them.
+pub(crate) fn grid(face: &ExactFace, steps: [f64; 2]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| spread(face.uv.min[axis], face.uv.max[axis], &face.kinks[axis], steps[axis]))
 }
 

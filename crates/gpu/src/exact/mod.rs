@@ -1,12 +1,16 @@
 //! Exact faces for drawing: surfaces, trimming curves in their parameters, and how many samples a view needs.
 
+mod cone;
 mod edges;
 mod faces;
 mod lod;
+mod outside;
 mod pieces;
 pub(crate) mod trim;
 
+pub(crate) use cone::{Cone, normal_cone};
 pub(crate) use edges::{EdgeParameters, edge_lines};
 pub use faces::{ExactFace, ExactModel, ExactPart, exact_model};
-pub(crate) use lod::grid;
+pub(crate) use lod::{grid, steps};
+pub(crate) use outside::outside_faces;
 pub(crate) use pieces::Cubic;

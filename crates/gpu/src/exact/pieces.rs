@@ -35,6 +35,17 @@ impl Cubic {
         self.restricted(t, t)[0]
     }
 
+    /// The control points in single precision: four x, then four y.
+    pub fn as_f32(&self) -> [[f32; 4]; 2] {
+        [self.points.map(|p| p.x as f32), self.points.map(|p| p.y as f32)]
+    }
+
+    /// The largest second derivative by the parameter along each axis.
+    pub fn second(&self) -> DVec2 {
+        let [a, b, c, d] = self.points;
+        6.0 * (a - 2.0 * b + c).abs().max((b - 2.0 * c + d).abs())
+    }
+
     /// The length of the control polygon along each axis.
     pub fn length_by_axis(&self) -> DVec2 {
         self.points.windows(2).map(|w| (w[1] - w[0]).abs()).sum()

@@ -49,6 +49,13 @@ impl TrimTable {
     }
 }
 
+impl TrimTable {
+    /// Bytes of the larger of its lists.
+    pub fn bytes(&self) -> u64 {
+        (self.pieces.len() * size_of::<[f32; 4]>()).max(self.lists.len() * size_of::<u32>()) as u64
+    }
+}
+
 #[cfg(test)]
 fn cubic([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     let s = 1.0 - t;

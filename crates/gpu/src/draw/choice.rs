@@ -1,0 +1,111 @@
+//! How finely one face is sampled for a view, and when a choice made before still serves.
+
+use crate::exact::{Cubic, ExactFace, steps};
+use chordal_nurbs::DVec2;
+
+/// The largest distance between what is drawn and the exact surface, pixels.
+pub const PIXEL_ERROR: f64 = 0.5;
+/// Places along a border piece at most.
+const BORDER_STEPS: f64 = 64.0;
+/// Texels along a side of the texture of one face's trim, at least and at most.
+const TEXELS: [f64; 2] = [8.0, 2048.0];
+/// How many times as fine as needed samples may be before they are made anew.
+const TOO_FINE: f64 = 2.0;
+/// How many times as fine as needed they are made where the view moves, so that the next frames need no new ones.
+const RESERVE: f64 = 1.25;
+
+/// Samples of one face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Choice {
+    /// Along u and v, before kinks are added.
+    pub steps: [f64; 2],
+    /// Along the most bent piece of its border, continuous.
+    pub border: f64,
+    /// Of the texture of its trim.
+    pub texels: [f64; 2],
+    /// The error it is made for, in the part's units.
+    pub error: f64,
+}
+
+impl Choice {
+    /// What an error in the part's units asks for.
+    pub fn of(face: &ExactFace, error: f64) -> Self {
+        let most = face.border_bends().fold(0.0, f64::max);
+        // A texel is half as large as the pixel that shows it: the error is half a pixel.
+        let texels = face.stretch.map(|s| (s / error * (0.5 / PIXEL_ERROR)).clamp(TEXELS[0], TEXELS[1]));
+        Self { steps: steps(face, error), border: border_steps(most, error), texels, error }
+    }
+
+    /// The same for samples that have to serve while the view moves.
+    pub fn with_reserve(self, face: &ExactFace) -> Self {
+        // An error goes with the square of a step.
+        Self::of(face, self.error / (RESERVE * RESERVE))
+    }
+
+    /// True where samples chosen so are fine enough for what is `needed`, and not much finer. Textures count where there are any.
+    pub fn serves(&self, needed: &Self, textured: bool) -> bool {
+        let serves = |has: f64, needs: f64| has >= needs && has <= (TOO_FINE * needs).ceil();
+        let all = |has: [f64; 2], needs: [f64; 2]| (0..2).all(|axis| serves(has[axis], needs[axis]));
+        all(self.steps, needed.steps)
+            && serves(self.border, needed.border)
+            && (!textured || all(self.texels, needed.texels))
+    }
+}
+
+/// Half the error for the surface's bend and the curve's own.
+fn border_steps(bend: f64, error: f64) -> f64 {
+    (bend / (2.0 * error)).sqrt().clamp(2.0, BORDER_STEPS)
+}
+
+impl ExactFace {
+    /// The pieces of its border: its loops, or its square.
+    fn border_pieces(&self) -> Vec<Cubic> {
+        let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        match self.loops.is_empty() {
+            true => (0..4).map(|k| Cubic::line(square[k], square[(k + 1) % 4])).collect(),
+            false => self.loops.clone(),
+        }
+    }
+
+    /// Per piece of the border how much its image bends, in the part's units, its parameter running over 0..=1.
+    fn border_bends(&self) -> impl Iterator<Item = f64> {
+        let [uu, uv, vv] = self.bends;
+        let (size, stretch) = (self.uv.size(), DVec2::from(self.stretch));
+        self.border_pieces().into_iter().map(move |piece| {
+            let d = piece.length_by_axis() * size;
+            let own = piece.second().dot(stretch);
+            uu * d.x * d.x + 2.0 * uv * d.x * d.y + vv * d.y * d.y + own
+        })
+    }
+
+    /// Pairs of native parameters, the ends of short pieces of the border.
+    pub(crate) fn border(&self, error: f64) -> Vec<DVec2> {
+        let size = self.uv.size();
+        let mut found = Vec::new();
+        for (piece, bend) in self.border_pieces().iter().zip(self.border_bends()) {
+            let steps = border_steps(bend, error).ceil();
+            let at = |k: f64| self.uv.clamp(self.uv.min + piece.at(k / steps) * size);
+            found.extend((0..steps as u32).flat_map(|k| [at(f64::from(k)), at(f64::from(k) + 1.0)]));
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choices_serve_while_they_are_fine_enough_and_not_too_fine() {
+        let choice = |steps: f64, texels: f64| Choice {
+            steps: [steps, 1.0],
+            border: 2.0,
+            texels: [texels, 8.0],
+            error: 1.0,
+        };
+        let has = choice(10.0, 100.0);
+        assert!(has.serves(&choice(10.0, 100.0), true) && has.serves(&choice(5.0, 60.0), true));
+        assert!(!has.serves(&choice(11.0, 100.0), false) && !has.serves(&choice(4.0, 100.0), false));
+        assert!(has.serves(&choice(10.0, 300.0), false) && !has.serves(&choice(10.0, 300.0), true));
+    }
+}

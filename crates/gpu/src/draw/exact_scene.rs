@@ -1,0 +1,447 @@
+//! Exact faces drawn again and again: what a frame can use of those before it is not evaluated anew.
+//!
+//! 1. Placements and faces that the view cannot show are rejected by bounds (`visible.rs`).
+//! 2. Each face that is left is asked how fine it must be (`choice.rs`). Where samples that are there serve, they are kept.
+//! 3. The others are evaluated together, in one dispatch for each resident, and become a generation (`generation.rs`).
+//! 4. Generations that hold little of use are evaluated anew with them, so that there are never many.
+
+use super::choice::Choice;
+use super::exact::ExactRenderer;
+use super::generation::{Generation, Member};
+use super::mesh_groups::{Lines, Triangles};
+use super::mesh_shapes::{local, scene_outline, scenery_of, shape_boxes};
+use super::renderer::{Renderer, Stage, draw, placement_data};
+use super::residents::{Home, Resident, settle};
+use super::target::Target;
+use super::view_data::view_data;
+use super::visible::{Frustum, Shown, Visible};
+use super::{Background, Camera, Picture, RenderOptions, Scenery, Style, Trim};
+use crate::exact::edge_lines;
+use crate::{ExactModel, Gpu, GpuError};
+use chordal_brep::Model;
+use chordal_mesh::Scene;
+use chordal_nurbs::NurbsSurface;
+use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+/// Generations that are kept before the smaller half of them is evaluated anew.
+const MOST_GENERATIONS: usize = 12;
+/// Lines are made for an error smaller by this, and kept while it is at most so much smaller twice over.
+const LINE_RESERVE: f64 = 2.0;
+
+/// What one frame took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FrameCounts {
+    /// Faces drawn, those of parts that are placed several times once for all placements that share samples.
+    pub faces: usize,
+    /// Faces evaluated for this frame, and their points.
+    pub evaluated: usize,
+    pub points: usize,
+    /// Faces beyond the picture, and faces that show their backs.
+    pub outside: usize,
+    pub backs: usize,
+    /// Placements beyond the picture.
+    pub placements_outside: usize,
+}
+
+/// A model on the device.
+#[derive(Debug)]
+pub struct ExactScene<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    exact: ExactModel,
+    style: Style,
+    scenery: Scenery,
+    boxes: Vec<[DVec3; 2]>,
+    outline: Vec<DVec3>,
+    residents: Vec<Resident>,
+    homes: Vec<Vec<Home>>,
+    stage: Stage,
+    triangles: Vec<Triangles>,
+    lines: Vec<Lines>,
+    /// Per shape the error that its lines are made for.
+    line_errors: Vec<f64>,
+    trim: Trim,
+    generations: BTreeMap<u64, Generation>,
+    next_generation: u64,
+    /// By shape and class, then by face.
+    sampled: BTreeMap<(usize, i32), Vec<Option<Sampled>>>,
+    target: Option<Target>,
+}
+
+/// Where a face's samples are.
+#[derive(Clone, Copy, Debug)]
+struct Sampled {
+    generation: u64,
+    index: usize,
+    choice: Choice,
+    /// The surface has changed since.
+    stale: bool,
+}
+
+/// A face of one level: shape and class, and its number in the part.
+type Key = ((usize, i32), usize);
+
+/// A face that is drawn, and the placements it is seen in.
+type Seen = (Key, Range<u32>);
+
+/// A face to be evaluated.
+type Wish = (Key, Choice);
+
+impl<'a> ExactScene<'a> {
+    /// Uploads what does not change with the view. `scene` and `model` are those that `exact` was made of.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] for a face beyond what the device binds at once, and what [`Gpu::watched`] gives.
+    pub fn new(
+        gpu: &Gpu,
+        exact: ExactModel,
+        (scene, model): (&'a Scene, &'a Model),
+        style: Style,
+    ) -> Result<Self, GpuError> {
+        let (mut scenery, _) = scenery_of(scene, model, style, Some(&exact));
+        // Lines are made for the view.
+        scenery.shapes.iter_mut().for_each(|shape| shape.segments.clear());
+        gpu.watched("uploading the model", || {
+            let (residents, homes) = settle(gpu, &exact, gpu.binding_limit())?;
+            Ok(Self {
+                boxes: shape_boxes(scene),
+                outline: scene_outline(scene),
+                stage: Stage::new(gpu, scenery.placed.len())?,
+                triangles: Triangles::upload(gpu, &scenery.shapes)?,
+                lines: Vec::new(),
+                line_errors: vec![0.0; scenery.shapes.len()],
+                trim: Trim::default(),
+                generations: BTreeMap::new(),
+                next_generation: 0,
+                sampled: BTreeMap::new(),
+                target: None,
+                scene,
+                model,
+                exact,
+                style,
+                scenery,
+                residents,
+                homes,
+            })
+        })
+    }
+
+    /// The faces that are drawn exactly, and those that are not.
+    pub fn exact(&self) -> &ExactModel {
+        &self.exact
+    }
+
+    /// All points that are on the device.
+    pub fn points(&self) -> usize {
+        self.generations.values().map(|g| g.points).sum()
+    }
+
+    /// Puts a surface of the same degrees and counts in the place of that of face `face` (a number among the exact faces of
+    /// `part`), and uploads it; the bytes that went. Trims keep their place in the parameters; lines and bounds that other faces
+    /// have of it do not move, so that pictures of moving surfaces leave lines out.
+    ///
+    /// # Errors
+    /// [`GpuError::NoSuchSurface`], [`GpuError::OtherShape`], and what [`Gpu::watched`] gives.
+    pub fn set_surface(
+        &mut self,
+        gpu: &Gpu,
+        part: usize,
+        face: usize,
+        surface: &NurbsSurface,
+    ) -> Result<u64, GpuError> {
+        let home = *self
+            .homes
+            .get(part)
+            .and_then(|of_part| of_part.get(face))
+            .ok_or(GpuError::NoSuchSurface(face))?;
+        let resident = &mut self.residents[home.resident];
+        resident.set.replace(home.surface, surface)?;
+        let sent = resident.on_device.update(gpu, &resident.set, home.surface)?;
+        let of_part = &mut self.exact.parts[part];
+        of_part.faces[face].replace_surface(surface);
+        // A shell that moves may open.
+        of_part.faces.iter_mut().for_each(|f| f.outward = None);
+        if let Some([low, high]) = of_part.faces[face].bounds {
+            let [l, h] = self.boxes[part];
+            self.boxes[part] = [l.min(low), h.max(high)];
+        }
+        for (_, faces) in self.sampled.iter_mut().filter(|(key, _)| key.0 == part) {
+            faces[face].iter_mut().for_each(|s| s.stale = true);
+        }
+        Ok(sent)
+    }
+
+    pub(crate) fn draw(
+        &mut self,
+        gpu: &Gpu,
+        (renderer, exact): (&Renderer, &ExactRenderer),
+        options: &RenderOptions,
+    ) -> Result<FrameCounts, GpuError> {
+        if self.target.as_ref().is_none_or(|t| t.size != options.size) {
+            self.target = Some(Target::new(gpu, options.size)?);
+        }
+        let camera = options.camera(&self.outline);
+        gpu.watched("drawing", || {
+            let (visible, frustum) = self.see(gpu, &camera, options);
+            let (mut counts, keys) = self.evaluate(gpu, exact, &visible, &frustum, options)?;
+            counts.placements_outside = self.scenery.placed.len() - visible.order.len();
+            if options.lines {
+                self.refine_lines(gpu, renderer, &visible)?;
+            }
+            let drawn = self.by_generation(&keys);
+            let target = self.target.as_ref().expect("made above");
+            draw(gpu, target, options.background, |pass| {
+                renderer.draw_triangles(gpu, pass, &self.stage, &self.triangles, &visible.placed);
+                pass.set_pipeline(exact.faces(self.trim));
+                for (id, faces) in &drawn {
+                    self.generations[id].draw_faces(pass, faces.iter());
+                }
+                pass.set_pipeline(&exact.borders);
+                for (id, faces) in &drawn {
+                    self.generations[id].draw_borders(pass, faces.iter());
+                }
+                if options.lines {
+                    renderer.draw_lines(pass, &self.lines, &visible.placed);
+                }
+            });
+            Ok(counts)
+        })
+    }
+
+    /// The picture drawn last.
+    pub(crate) fn read(&self, gpu: &Gpu, background: Background) -> Result<Picture, GpuError> {
+        match &self.target {
+            Some(target) => target.read(gpu, background),
+            None => Err(GpuError::Picture("nothing has been drawn".into())),
+        }
+    }
+
+    /// What the camera may show; the view and its placements go to the device.
+    fn see(&self, gpu: &Gpu, camera: &Camera, options: &RenderOptions) -> (Visible, Frustum) {
+        let frustum = if options.reject { Frustum::new(camera, options.size) } else { Frustum::all(camera) };
+        let visible = Visible::new(&self.scenery, &self.boxes, &frustum);
+        let placed = visible.order.iter().map(|&k| &self.scenery.placed[k]);
+        let data: Vec<_> = placed.map(|p| placement_data(&self.scenery, camera, p)).collect();
+        self.stage.set(gpu, &view_data(camera, options), &data);
+        (visible, frustum)
+    }
+
+    /// Rejects, chooses, and evaluates what has no samples that serve; the faces to draw and where.
+    fn evaluate(
+        &mut self,
+        gpu: &Gpu,
+        renderer: &ExactRenderer,
+        visible: &Visible,
+        frustum: &Frustum,
+        options: &RenderOptions,
+    ) -> Result<(FrameCounts, Vec<Seen>), GpuError> {
+        if self.trim != options.trim {
+            (self.trim, self.generations, self.sampled) = (options.trim, BTreeMap::new(), BTreeMap::new());
+        }
+        self.forget_levels(visible);
+        let worn = self.worn_generations();
+        let leave_out_backs = options.reject && options.section.is_none();
+        let (mut counts, mut keys, mut wishes) = (FrameCounts::default(), Vec::new(), Vec::<Wish>::new());
+        for level in &visible.levels {
+            let at = (level.shape, level.class);
+            let faces = &self.exact.parts[level.shape].faces;
+            let sampled = self.sampled.entry(at).or_insert_with(|| vec![None; faces.len()]);
+            for (index, face) in faces.iter().enumerate() {
+                match level.shows(frustum, face, leave_out_backs) {
+                    Shown::Outside => counts.outside += 1,
+                    Shown::Back => counts.backs += 1,
+                    Shown::Yes => {
+                        let needed = Choice::of(face, level.error);
+                        match &sampled[index] {
+                            None => wishes.push(((at, index), needed)),
+                            Some(s) if !s.choice.serves(&needed, options.trim == Trim::Texture) => {
+                                wishes.push(((at, index), needed.with_reserve(face)));
+                            }
+                            Some(s) if s.stale || worn.contains(&s.generation) => {
+                                wishes.push(((at, index), s.choice));
+                            }
+                            Some(_) => {}
+                        }
+                        keys.push(((at, index), level.placed.clone()));
+                    }
+                }
+            }
+        }
+        counts.faces = keys.len();
+        counts.evaluated = wishes.len();
+        counts.points = self.fulfil(gpu, renderer, wishes, &worn)?;
+        self.release(&worn);
+        Ok((counts, keys))
+    }
+
+    /// Evaluates faces; the number of points.
+    fn fulfil(
+        &mut self,
+        gpu: &Gpu,
+        renderer: &ExactRenderer,
+        wishes: Vec<Wish>,
+        worn: &BTreeSet<u64>,
+    ) -> Result<usize, GpuError> {
+        let mut by_resident: BTreeMap<usize, Vec<Wish>> = BTreeMap::new();
+        for wish in wishes {
+            let ((shape, _), face) = wish.0;
+            by_resident.entry(self.homes[shape][face].resident).or_default().push(wish);
+        }
+        let mut points = 0;
+        for (resident, wishes) in by_resident {
+            points += match self.same_again(gpu, renderer, &wishes, worn)? {
+                Some(points) => points,
+                None => self.new_generation(gpu, renderer, resident, &wishes)?,
+            };
+        }
+        Ok(points)
+    }
+
+    /// Evaluates in place where the faces are all those of one generation and their samples stay; the number of points.
+    fn same_again(
+        &mut self,
+        gpu: &Gpu,
+        renderer: &ExactRenderer,
+        wishes: &[Wish],
+        worn: &BTreeSet<u64>,
+    ) -> Result<Option<usize>, GpuError> {
+        let samples = |s: &Self, (at, face): Key| s.sampled[&at][face];
+        let first = samples(self, wishes[0].0).filter(|s| !worn.contains(&s.generation));
+        let Some(first) = first else { return Ok(None) };
+        let stay = wishes.iter().all(|(key, choice)| {
+            samples(self, *key).is_some_and(|s| s.generation == first.generation && s.choice == *choice)
+        });
+        let Some(generation) = self.generations.get_mut(&first.generation) else { return Ok(None) };
+        if !stay || generation.live != wishes.len() {
+            return Ok(None);
+        }
+        let members = wishes.iter().filter_map(|((at, face), _)| {
+            let sampled = self.sampled[at][*face]?;
+            Some((sampled.index, self.homes[at.0][*face], self.scenery.shapes[at.0].middle))
+        });
+        generation.again(gpu, renderer, &self.residents[generation.resident], members)?;
+        let points = generation.points;
+        for ((at, face), _) in wishes {
+            let slot = self.sampled.get_mut(at).and_then(|faces| faces[*face].as_mut());
+            slot.into_iter().for_each(|s| s.stale = false);
+        }
+        Ok(Some(points))
+    }
+
+    fn new_generation(
+        &mut self,
+        gpu: &Gpu,
+        renderer: &ExactRenderer,
+        resident: usize,
+        wishes: &[Wish],
+    ) -> Result<usize, GpuError> {
+        let members: Vec<Member> = wishes
+            .iter()
+            .map(|&(((shape, _), face), choice)| Member {
+                face: &self.exact.parts[shape].faces[face],
+                home: self.homes[shape][face],
+                middle: self.scenery.shapes[shape].middle,
+                choice,
+            })
+            .collect();
+        let stage = self.stage.buffers();
+        let made = Generation::new(gpu, renderer, &self.residents[resident], &members, self.trim, stage)?;
+        let points = made.points;
+        let id = self.next_generation;
+        self.next_generation += 1;
+        self.generations.insert(id, made);
+        for (index, &((at, face), choice)) in wishes.iter().enumerate() {
+            let slot = &mut self.sampled.get_mut(&at).expect("entered when the face was asked for")[face];
+            let old = slot.replace(Sampled { generation: id, index, choice, stale: false });
+            forget(&mut self.generations, old);
+        }
+        Ok(points)
+    }
+
+    /// Generations that are to be evaluated anew: of too many the smaller half, and those that are mostly unused.
+    fn worn_generations(&self) -> BTreeSet<u64> {
+        let mut by_use: Vec<(usize, u64)> = self.generations.iter().map(|(id, g)| (g.live, *id)).collect();
+        by_use.sort_unstable();
+        let worn = if by_use.len() > MOST_GENERATIONS { by_use.len() / 2 } else { 0 };
+        let unused = self.generations.iter().filter(|(_, g)| 4 * g.live < g.draws());
+        by_use.iter().take(worn).map(|(_, id)| *id).chain(unused.map(|(id, _)| *id)).collect()
+    }
+
+    /// Drops worn generations; what they still hold is of faces that are not seen now.
+    fn release(&mut self, worn: &BTreeSet<u64>) {
+        for slot in self.sampled.values_mut().flatten() {
+            if slot.is_some_and(|s| worn.contains(&s.generation)) {
+                forget(&mut self.generations, slot.take());
+            }
+        }
+    }
+
+    /// Drops the samples of classes that no placement of a visible shape is in any more.
+    fn forget_levels(&mut self, visible: &Visible) {
+        let used: BTreeSet<(usize, i32)> = visible.levels.iter().map(|l| (l.shape, l.class)).collect();
+        let seen: BTreeSet<usize> = visible.levels.iter().map(|l| l.shape).collect();
+        let gone: Vec<_> =
+            self.sampled.keys().filter(|k| seen.contains(&k.0) && !used.contains(k)).copied().collect();
+        for key in gone {
+            for old in self.sampled.remove(&key).into_iter().flatten() {
+                forget(&mut self.generations, old);
+            }
+        }
+    }
+
+    /// What is drawn of every generation.
+    fn by_generation(&self, keys: &[Seen]) -> BTreeMap<u64, Vec<(usize, Range<u32>)>> {
+        let mut found: BTreeMap<u64, Vec<_>> = BTreeMap::new();
+        for ((at, face), placed) in keys {
+            if let Some(sampled) = self.sampled[at][*face] {
+                found.entry(sampled.generation).or_default().push((sampled.index, placed.clone()));
+            }
+        }
+        found
+    }
+
+    /// Makes lines as fine as the view needs, of the shapes whose lines do not serve.
+    fn refine_lines(&mut self, gpu: &Gpu, renderer: &Renderer, visible: &Visible) -> Result<(), GpuError> {
+        let mut needs: BTreeMap<usize, f64> = BTreeMap::new();
+        for level in &visible.levels {
+            let error = needs.entry(level.shape).or_insert(f64::INFINITY);
+            *error = error.min(0.5 * level.error);
+        }
+        let mut changed = false;
+        for (shape, error) in needs {
+            let has = self.line_errors[shape];
+            if has <= error && has * LINE_RESERVE * LINE_RESERVE >= error {
+                continue;
+            }
+            let made_for = error / LINE_RESERVE;
+            let lines = edge_lines(&self.model.parts[shape], &self.scene.parts[shape].mesh, made_for);
+            let middle = self.scenery.shapes[shape].middle;
+            self.scenery.shapes[shape].segments = lines.iter().map(|e| e.map(|p| local(p, middle))).collect();
+            self.line_errors[shape] = made_for;
+            changed = true;
+        }
+        if changed {
+            self.lines = Lines::upload(gpu, &renderer.lines, &self.scenery.shapes, self.stage.buffers())?;
+        }
+        Ok(())
+    }
+
+    /// The style that the scene was made for.
+    pub fn style(&self) -> Style {
+        self.style
+    }
+}
+
+/// Takes samples from the generation they are in; one without any is dropped.
+fn forget(generations: &mut BTreeMap<u64, Generation>, old: Option<Sampled>) {
+    let Some(old) = old else { return };
+    if let Some(generation) = generations.get_mut(&old.generation) {
+        generation.live -= 1;
+        if generation.live == 0 {
+            generations.remove(&old.generation);
+        }
+    }
+}
