@@ -5,6 +5,7 @@
 mod common;
 
 use chordal_brep::{Coedge, Edge, FaceGeometry, Loop, Part, Pcurve, Vertex};
+use chordal_mesh::PartMesh;
 use chordal_nurbs::{Curve, DAffine3, DVec2, DVec3, Surface};
 use chordal_tessellate::PartReport;
 use glam::DMat3;
@@ -93,6 +94,19 @@ fn failed(report: &PartReport) -> usize {
     report.faces.iter().filter(|f| f.failed.is_some()).count()
 }
 
+/// The centre of gravity of the triangles: it tells which side of a loop a face lies on.
+fn middle(mesh: &PartMesh) -> DVec3 {
+    let mut sum = (DVec3::ZERO, 0.0);
+    for face in &mesh.faces {
+        for corners in &face.triangles {
+            let [a, b, c] = corners.map(|i| mesh.positions[face.corners[i as usize].position as usize]);
+            let area = (b - a).cross(c - a).length();
+            sum = (sum.0 + (a + b + c) / 3.0 * area, sum.1 + area);
+        }
+    }
+    sum.0 / sum.1.max(f64::MIN_POSITIVE)
+}
+
 /// Models that the mesher is known to treat differently, and why.
 const KNOWN: &[(&str, &str)] = &[
     ("torus_apple", "the chart of a mirrored torus is a mirror image, which is filled from its other side"),
@@ -140,6 +154,10 @@ fn variants_get_the_same_mesh() {
             }
             if before.problems.len() < after.problems.len() {
                 add(format!("new problems: {:?}", after.problems));
+            }
+            let (there, here) = (by.transform_point3(middle(&mesh)), middle(&moved_mesh));
+            if there.distance(here) > 20.0 * scale * tolerance {
+                add(format!("its middle is {here}, not {there}"));
             }
             for (a, b) in before.shells.iter().zip(&after.shells) {
                 let volume = a.volume * scale.powi(3);

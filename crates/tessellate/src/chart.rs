@@ -317,7 +317,7 @@ impl FaceContext<'_, '_> {
             let previous = &done[i - 1];
             let end = previous.uv[previous.uv.len() - 1];
             let shift = if previous.poles[1] && rest[0].poles[0] {
-                self.pole_shift(end, rest[0].uv[0])
+                self.pole_shift(previous.uv[previous.uv.len() - 2], end, rest[0].uv[0])
             } else {
                 self.surface.nearest_turn(rest[0].uv[0], end) - rest[0].uv[0]
             };
@@ -345,9 +345,9 @@ impl FaceContext<'_, '_> {
     }
 
     /// The whole periods to add behind a pole: the loop runs along the pole with the interior on its left, which is
-    /// against the parameter on the upper side of the surface and with it on the lower.
-    fn pole_shift(&self, end: DVec2, start: DVec2) -> DVec2 {
-        let Some((axis, upper)) = self.pole_side(end) else { return DVec2::ZERO };
+    /// against the parameter where it came from below and with it where it came from above. `before`: on the way there.
+    fn pole_shift(&self, before: DVec2, end: DVec2, start: DVec2) -> DVec2 {
+        let Some((axis, upper)) = self.pole_side(before, end) else { return DVec2::ZERO };
         let along = 1 - axis;
         let Some(period) = self.surface.periods[along] else { return DVec2::ZERO };
         // Seen against the face's own sense the loop runs the other way.
@@ -369,17 +369,11 @@ impl FaceContext<'_, '_> {
         shift
     }
 
-    /// Which pole line a chart point lies on: (the pole's axis, whether it is the upper end of the domain).
-    fn pole_side(&self, uv: DVec2) -> Option<(usize, bool)> {
-        let nearest = self.surface.poles.iter().min_by(|a, b| {
-            let d = |p: &chordal_nurbs::Pole| (uv[p.axis] - p.value).abs();
-            d(a).total_cmp(&d(b))
-        })?;
-        let others = self.surface.poles.iter().filter(|p| p.axis == nearest.axis && p.value != nearest.value);
-        let domain = self.surface.domain();
-        let middle = if domain.is_finite() { domain.center()[nearest.axis] } else { f64::NAN };
-        let upper = others.map(|p| p.value < nearest.value).next().unwrap_or(nearest.value > middle);
-        Some((nearest.axis, upper))
+    /// The pole line that a loop reaches at `end`, coming from `before`: (the pole's axis, whether the loop comes from below).
+    fn pole_side(&self, before: DVec2, end: DVec2) -> Option<(usize, bool)> {
+        let off = |p: &chordal_nurbs::Pole| self.surface.offset_from(p.axis, p.value, end).abs();
+        let pole = self.surface.poles.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        Some((pole.axis, before[pole.axis] < end[pole.axis]))
     }
 }
 

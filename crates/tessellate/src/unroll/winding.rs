@@ -26,20 +26,13 @@ impl Unroll<'_, '_> {
             1 => {
                 let mut a = winding.remove(0);
                 let value = mean(&a.points, across);
-                let pole = |upper: bool| {
-                    let poles = self.context.surface.poles.iter().filter(|p| p.axis == across);
-                    let beyond = poles.filter(|p| (p.value > value) == upper);
-                    beyond
-                        .min_by(|p, q| (p.value - value).abs().total_cmp(&(q.value - value).abs()))
-                        .map(|p| p.value)
-                };
-                let value = match pole(is_lower(&a)) {
+                let value = match self.pole_beyond(across, value, is_lower(&a)) {
                     Some(value) => value,
                     None => {
                         // Nothing closes it on the side it claims: the file has it the wrong way round.
                         a.reverse();
                         self.reversed = true;
-                        pole(is_lower(&a))
+                        self.pole_beyond(across, value, is_lower(&a))
                             .ok_or("one loop winds round the surface and nothing bounds the other side")?
                     }
                 };
@@ -51,6 +44,18 @@ impl Unroll<'_, '_> {
             }
             n => Err(format!("{n} loops wind round the surface")),
         }
+    }
+
+    /// The first pole line above or below a value, in whichever turn of a closed direction.
+    fn pole_beyond(&self, axis: usize, value: f64, upper: bool) -> Option<f64> {
+        let surface = self.context.surface;
+        let poles = surface.poles.iter().filter(|p| p.axis == axis).map(|p| p.value);
+        let distance = |pole: f64| {
+            let ahead = if upper { pole - value } else { value - pole };
+            surface.periods[axis].map_or(ahead, |period| ahead.rem_euclid(period))
+        };
+        let nearest = poles.map(distance).filter(|&d| d > 0.0).min_by(f64::total_cmp)?;
+        Some(if upper { value + nearest } else { value - nearest })
     }
 
     /// The polygon of two loops that wind round a torus both ways at once.
