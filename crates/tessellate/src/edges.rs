@@ -5,6 +5,7 @@
 //! out later comes back as a request ([`EdgeSamples::split`]).
 
 use crate::edge_method::EdgeMethod;
+use crate::grid::settled;
 use crate::metric::{Limits, Sizing};
 use crate::prove::{TURN_LENGTH, turns_too_far};
 use crate::strategy::trace::Trace;
@@ -390,8 +391,9 @@ impl Probes {
         let mut at = 0;
         for k in 1..count {
             let share = k as f64 / count as f64;
+            let even = first + (last - first) * share;
             if total <= 1e-12 {
-                t.push(first + (last - first) * share);
+                t.push(even);
                 continue;
             }
             let wanted = total * share;
@@ -400,7 +402,9 @@ impl Probes {
             }
             let step = self.sum[at + 1] - self.sum[at];
             let inside = if step > 0.0 { (wanted - self.sum[at]) / step } else { 0.5 };
-            t.push(self.t[at] + (self.t[at + 1] - self.t[at]) * inside);
+            let uneven = self.t[at] + (self.t[at + 1] - self.t[at]) * inside;
+            let snapped = settled(uneven, even, last - first);
+            t.push(if snapped > t[k - 1] && snapped < last { snapped } else { uneven });
         }
         t.push(last);
         t

@@ -14,7 +14,7 @@ use crate::report::Phases;
 use crate::strategy::{self, Strategy, trace::Trace};
 use crate::triangulate::{Location, NONE, Triangulation, clip_ears, orient};
 use crate::unroll::{Chart, SEAM_CHORD};
-use chordal_nurbs::{DVec2, DVec3, SurfaceBounds, UvBox};
+use chordal_nurbs::{DVec2, DVec3, SurfaceBounds, SurfaceJet, UvBox};
 use std::time::Instant;
 
 /// A face's triangles before vertices are joined with the neighbours'.
@@ -214,38 +214,41 @@ impl<'a, 's> FaceWork<'a, 's> {
 
     /// Adds the geometry of one chart vertex.
     fn measure(&mut self, p_uv: DVec2) {
-        let jet = self.context.surface.jet(p_uv);
-        let metric = match Sizing::new(&jet, self.limits) {
-            Some(sizing) => sizing.metric,
-            None => self.metric_beside_pole(p_uv),
-        };
-        let first =
-            Metric { uu: jet.du.length_squared(), uv: jet.du.dot(jet.dv), vv: jet.dv.length_squared() };
-        let sideways = Metric::sideways(&jet);
-        let per_chord = SIDEWAYS / (8.0 * self.limits.tolerance);
-        self.metrics.push(metric.plus(first, self.floor).plus(sideways, per_chord));
+        let surface = self.context.surface;
+        let jet = surface.jet(p_uv);
+        let at_pole = surface.pole_at(jet.p, self.context.resolution).is_some();
+        let sizing = if at_pole { None } else { Sizing::new(&jet, self.limits) };
+        self.metrics.push(match sizing {
+            Some(sizing) => self.metric_of(&jet, sizing),
+            // What is left of derivatives at a pole is rounding: triangles there are shaped as a little further inside.
+            None => {
+                let beside = surface.jet(self.beside_pole(p_uv));
+                self.metric_of(&beside, Sizing::new(&beside, self.limits).unwrap_or_default())
+            }
+        });
         self.xyz.push(jet.p);
-        self.normals.push(self.context.surface.normal_at(p_uv, &jet));
-        self.at_pole.push(self.context.surface.pole_at(jet.p, self.context.resolution).is_some());
+        self.normals.push(surface.normal_at(p_uv, &jet));
+        self.at_pole.push(at_pole);
     }
 
-    /// At a pole the metric of a point a little further inside.
-    fn metric_beside_pole(&self, p_uv: DVec2) -> Metric {
-        let domain = UvBox::from_points(self.mesh.points.iter().copied());
-        let inside = p_uv.lerp(domain.center(), 0.05);
-        Sizing::new(&self.context.surface.jet(inside), self.limits).map_or(Metric::default(), |s| s.metric)
+    fn metric_of(&self, jet: &SurfaceJet, sizing: Sizing) -> Metric {
+        let first =
+            Metric { uu: jet.du.length_squared(), uv: jet.du.dot(jet.dv), vv: jet.dv.length_squared() };
+        let per_chord = SIDEWAYS / (8.0 * self.limits.tolerance);
+        sizing.metric.plus(first, self.floor).plus(Metric::sideways(jet), per_chord).settled()
+    }
+
+    fn beside_pole(&self, p_uv: DVec2) -> DVec2 {
+        p_uv.lerp(UvBox::from_points(self.mesh.points.iter().copied()).center(), 0.05)
     }
 
     fn measure_boundary(&mut self) {
-        let mut low = DVec3::INFINITY;
-        let mut high = DVec3::NEG_INFINITY;
-        for point in &self.chart.points {
-            let p = self.position(point.key);
-            (low, high) = (low.min(p), high.max(p));
-        }
-        // A hundredth of a chord across the whole face: enough to break ties, too little to matter.
-        let diagonal = (high - low).length().max(f64::MIN_POSITIVE);
-        self.floor = (0.1 / diagonal).powi(2);
+        // A hundredth of a chord across the whole face: enough to break ties, too little to matter. No box, which would
+        // depend on how the part lies in space.
+        let points = || self.chart.points.iter().map(|point| self.position(point.key));
+        let middle = points().sum::<DVec3>() / self.chart.points.len().max(1) as f64;
+        let radius = points().fold(f64::MIN_POSITIVE, |m, p| m.max(p.distance(middle)));
+        self.floor = (0.05 / radius).powi(2);
         for i in 0..self.mesh.points.len() {
             self.measure(self.mesh.points[i]);
         }

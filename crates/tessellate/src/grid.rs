@@ -31,3 +31,14 @@ impl Grid {
         DVec2::new(snap(p_uv.x, self.quantum.x), snap(p_uv.y, self.quantum.y))
     }
 }
+
+/// Places that are spread by a measured rate lie at whole multiples of this share of the range from where an even rate would
+/// put them.
+const SPREAD_QUANTUM: f64 = 1.0 / (1u64 << 24) as f64;
+
+/// A place within a range of this length, moved by less than anyone can tell to where another rounding of the measured rate
+/// would have put it too.
+pub(crate) fn settled(uneven: f64, even: f64, range: f64) -> f64 {
+    let quantum = range * SPREAD_QUANTUM;
+    if quantum == 0.0 { uneven } else { even + ((uneven - even) / quantum).round() * quantum }
+}

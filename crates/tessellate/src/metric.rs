@@ -10,6 +10,17 @@ pub(crate) struct Metric {
     pub vv: f64,
 }
 
+/// Bits that are left of a metric's numbers, and the number of steps that this is.
+const SETTLED_BITS: u32 = 26;
+const SETTLED: f64 = (1u64 << SETTLED_BITS) as f64;
+
+/// A number rounded to so many bits.
+fn settled(x: f64) -> f64 {
+    let dropped = f64::MANTISSA_DIGITS - 1 - SETTLED_BITS;
+    let rounded = f64::from_bits((x.to_bits() + (1 << (dropped - 1))) >> dropped << dropped);
+    if x.is_finite() && rounded.is_finite() { rounded } else { x }
+}
+
 impl Metric {
     pub fn dot(&self, a: DVec2, b: DVec2) -> f64 {
         self.uu * a.x * b.x + self.uv * (a.x * b.y + a.y * b.x) + self.vv * a.y * b.y
@@ -29,6 +40,14 @@ impl Metric {
             uv: self.uv + other.uv * factor,
             vv: self.vv + other.vv * factor,
         }
+    }
+
+    /// The same but for the last bits, which hold rounding: which of two flips is better must not hang on them.
+    pub fn settled(self) -> Metric {
+        let shared = settled(self.uu * self.vv).sqrt();
+        let uv =
+            if shared > 0.0 { ((self.uv / shared) * SETTLED).trunc() / SETTLED * shared } else { self.uv };
+        Metric { uu: settled(self.uu), uv, vv: settled(self.vv) }
     }
 
     /// How far the lines of each parameter bend sideways in the surface, per square of the parameter.

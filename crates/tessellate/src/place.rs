@@ -8,6 +8,7 @@
 //!
 //! Rows are lines of one parameter, chosen so that their distance varies least along them.
 
+use crate::grid::settled;
 use crate::metric::{Limits, Sizing};
 use crate::surface::FaceSurface;
 use crate::unroll::Chart;
@@ -218,6 +219,8 @@ impl<'a, 's> Placer<'a, 's> {
             let step = plan.strips_up_to[at + 1] - plan.strips_up_to[at];
             let inside = if step > 0.0 { (wanted - plan.strips_up_to[at]) / step } else { 0.5 };
             let across = plan.across[at] + (plan.across[at + 1] - plan.across[at]) * inside;
+            let (low, height) = (self.bounds.min.y, self.bounds.max.y - self.bounds.min.y);
+            let across = settled(across, low + height * (k as f64 / count as f64), height);
             let mut row = Vec::new();
             for [from, to] in self.inside(across) {
                 self.fill(from, to, across, k, tightness, &mut row);
@@ -260,7 +263,9 @@ impl<'a, 's> Placer<'a, 's> {
             }
             let step = sum[at + 1] - sum[at];
             let inside = if step > 0.0 { (wanted - sum[at]) / step } else { 0.5 };
-            row.push(turned(DVec2::new(from + (at as f64 + inside) * width, across), self.axis));
+            let along = from + (at as f64 + inside) * width;
+            let along = settled(along, from + (to - from) * ((i + phase) / count), to - from);
+            row.push(turned(DVec2::new(along, across), self.axis));
             i += 1.0;
         }
     }

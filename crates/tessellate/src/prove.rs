@@ -348,9 +348,15 @@ impl<'a> Prover<'a> {
         let on_crease = self.crease_point(corners);
         let at_middle = longest.filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
         let middle = at_middle.map(|i| corners[(i + 1) % 3].midpoint(corners[(i + 2) % 3]));
-        let inner = [middle, Some(center)].map(|p| p.map(|p| work.chart.grid.snap(p)));
-        for p in [on_crease, inner[0], inner[1]].into_iter().flatten() {
-            let at = work.mesh.locate(p, t);
+        let snapped = |p: DVec2| work.chart.grid.snap(p);
+        let middle = middle.map(snapped).zip(at_middle);
+        let places =
+            [on_crease.map(|p| (p, None)), middle.map(|(p, i)| (p, Some(i))), Some((snapped(center), None))];
+        for (p, edge) in places.into_iter().flatten() {
+            let at = match edge {
+                Some(i) => work.mesh.locate_on(t, i, p),
+                None => work.mesh.locate(p, t),
+            };
             if !matches!(at, Location::Inside(_) | Location::OnEdge(..)) {
                 continue;
             }

@@ -29,6 +29,9 @@ impl Near {
     }
 }
 
+/// Inversion is that good, as a share of the domain.
+const BESIDE_SIDE: f64 = 1e-9;
+
 impl<'a> FaceSurface<'a> {
     /// Control rows closer together than `point` count as a pole.
     pub fn new(surface: &'a Surface, point: f64) -> Self {
@@ -82,7 +85,8 @@ impl<'a> FaceSurface<'a> {
             self.inverter.get_or_init(|| SurfaceInverter::new(self.surface, self.surface.domain()));
         let expected = near.map_or(0.0, |n| n.distance);
         let enough = 2.0 * expected;
-        let found = inverter.invert_within(p_xyz, near.map(|n| self.wrap.apply(n.uv)), enough);
+        let mut found = inverter.invert_within(p_xyz, near.map(|n| self.wrap.apply(n.uv)), enough);
+        found.uv = self.on_side(found.uv);
         Near {
             uv: near.map_or(found.uv, |near| self.nearest_turn(found.uv, near.uv)),
             distance: if found.distance <= enough { expected } else { found.distance },
@@ -106,6 +110,20 @@ impl<'a> FaceSurface<'a> {
             uv += step;
         }
         uv
+    }
+
+    /// A place that only rounding keeps off a side of the domain is on it.
+    fn on_side(&self, mut p_uv: DVec2) -> DVec2 {
+        let UvBox { min, max } = self.domain();
+        for axis in 0..2 {
+            let rounding = BESIDE_SIDE * (max[axis] - min[axis]);
+            for side in [min[axis], max[axis]] {
+                if rounding.is_finite() && (p_uv[axis] - side).abs() <= rounding {
+                    p_uv[axis] = side;
+                }
+            }
+        }
+        p_uv
     }
 
     /// Held to the domain in directions that are not closed.

@@ -14,7 +14,7 @@
 mod winding;
 
 use crate::chart::{ChartPoint, FaceContext, Key, OpenLoop, Segment};
-use crate::grid::Grid;
+use crate::grid::{Grid, settled};
 use crate::metric::{Limits, Sizing};
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 use winding::seam_beside;
@@ -149,7 +149,8 @@ impl Unroll<'_, '_> {
             }
             let step = sum[at + 1] - sum[at];
             let inside = if step > 0.0 { ((wanted - sum[at]) / step).min(1.0) } else { 0.5 };
-            let next = if k == count { to } else { from + d * (at as f64 + inside) };
+            let share = settled((at as f64 + inside) / probes as f64, k as f64 / count as f64, 1.0);
+            let next = if k == count { to } else { from + (to - from) * share };
             self.halve_until_near(points[points.len() - 1], next, SEAM_DEPTH, &mut points);
         }
         points.pop();

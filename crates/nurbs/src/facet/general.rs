@@ -145,6 +145,9 @@ pub(super) fn bound(
     }
 }
 
+/// A chord that bends by less than this share of its length bends to no side in particular.
+const STRAIGHT: f64 = 1e-7;
+
 /// See [`super::chord_bound`]: the error of linear interpolation across the chord, in two directions.
 pub(super) fn chord_bound(
     bounds: &SurfaceBounds<'_>,
@@ -159,7 +162,12 @@ pub(super) fn chord_bound(
     let Some(chord) = (xyz[1] - xyz[0]).try_normalize().filter(|_| !pieces.is_empty()) else {
         return f64::INFINITY;
     };
-    let across = chord.any_orthonormal_vector();
+    // Where it bends to, and not to any side: the bound must not depend on how the part lies in space.
+    let bend = (bounds.point(middle) - xyz[0].midpoint(xyz[1])).reject_from_normalized(chord);
+    let straight = bend.length() <= STRAIGHT * xyz[0].distance(xyz[1]);
+    let side =
+        if straight { bounds.normal(middle).map(|n| n.reject_from_normalized(chord)) } else { Some(bend) };
+    let across = side.and_then(DVec3::try_normalize).unwrap_or_else(|| chord.any_orthonormal_vector());
     let off = [across, chord.cross(across)]
         .map(|w| Form::new(pieces, middle, w, xyz[0]).largest_along(d) / (8.0 * least_weight));
     off[0].hypot(off[1]) + 0.25 * kink.dot(d.abs())

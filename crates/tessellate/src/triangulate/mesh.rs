@@ -135,6 +135,22 @@ impl Triangulation {
         Some(vertex)
     }
 
+    /// Where to insert a point that is meant to lie on the inner edge of `t` opposite corner `i`, however it was rounded.
+    pub fn locate_on(&self, t: u32, i: usize, p: DVec2) -> Location {
+        let other = self.neighbors[t as usize][i];
+        let splits = |(apex, a, b): (u32, u32, u32)| {
+            let [apex, a, b] = [apex, a, b].map(|v| self.points[v as usize]);
+            orient(apex, a, p) > 0.0 && orient(apex, p, b) > 0.0
+        };
+        if other != NONE
+            && splits(self.rotated(t, i))
+            && splits(self.rotated(other, self.corner_facing(other, t)))
+        {
+            return Location::OnEdge(t, i);
+        }
+        self.locate(p, t)
+    }
+
     fn relink(&mut self, t: u32, old: u32, new: u32) {
         if t != NONE {
             for n in &mut self.neighbors[t as usize] {

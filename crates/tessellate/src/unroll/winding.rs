@@ -258,7 +258,8 @@ pub(super) fn seam_beside(holes: &[OpenLoop], axis: usize, period: f64, start: f
     places
         .fold((start, distance(start)), |best, place| {
             let d = distance(place);
-            if d > best.1 { (place, d) } else { best }
+            // Of places that only rounding tells apart, the first.
+            if d > best.1 + 1e-9 * period { (place, d) } else { best }
         })
         .0
 }
