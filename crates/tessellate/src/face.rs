@@ -290,10 +290,15 @@ impl<'a, 's> FaceWork<'a, 's> {
         let pole = self.context.surface.pole_at(self.xyz[corner], self.context.resolution)?;
         let along = 1 - pole.axis;
         let [a, b] = [1, 2].map(|k| self.mesh.points[triangle[(i + k) % 3] as usize]);
-        let mut uv = self.mesh.points[corner];
-        uv[along] = 0.5 * (a[along] + b[along]);
+        let own = self.mesh.points[corner];
+        let mut uv = own;
         // Just inside: on the pole itself rounding decides which side the normal is taken from.
         uv[pole.axis] += BESIDE_POLE * (a.midpoint(b)[pole.axis] - uv[pole.axis]);
+        uv[along] = 0.5 * (a[along] + b[along]);
+        let side = |uv: DVec2| orient(uv, a, b);
+        // Triangles so thin that they would turn over keep the corner's own place along the pole, or altogether.
+        let places = [uv, if along == 0 { DVec2::new(own.x, uv.y) } else { DVec2::new(uv.x, own.y) }];
+        let uv = places.into_iter().find(|&uv| side(uv) * side(own) > 0.0).unwrap_or(own);
         Some((i, uv))
     }
 
