@@ -54,7 +54,7 @@ impl Choice {
 
 /// Half the error for the surface's bend and the curve's own.
 fn border_steps(bend: f64, error: f64) -> f64 {
-    (bend / (2.0 * error)).sqrt().clamp(2.0, BORDER_STEPS)
+    (bend / (2.0 * error)).sqrt().clamp(1.0, BORDER_STEPS)
 }
 
 impl ExactFace {

@@ -113,7 +113,8 @@ struct BorderOut {
 }
 
 // A strip along the border of a face, as wide as neighbours that are sampled differently may stand apart, and a pixel
-// behind both: it is seen in cracks alone.
+// behind both: it is seen in cracks alone. That of a face turned away lies further back, so that silhouettes are drawn in
+// the colours of what faces the eye.
 @vertex
 fn border_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> BorderOut {
     let face = faces[face_index];
@@ -133,8 +134,8 @@ fn border_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) ins
     clip = vec4<f32>(clip.xy + shift / view.viewport * clip.w, clip.zw);
     var out: BorderOut;
     out.p = select(a.xyz, b.xyz, at_b);
-    out.clip = nearer(clip, out.p, -1.0);
     out.normal = placement.normal * normal_of(face, number + select(0u, 1u, at_b));
+    out.clip = nearer(clip, out.p, select(-1.0, -2.0, dot(out.normal, towards_eye(out.p)) < 0.0));
     out.color = color_of(face, placement);
     return out;
 }

@@ -7,7 +7,7 @@
 
 use super::choice::Choice;
 use super::exact::ExactRenderer;
-use super::generation::{Generation, Member};
+use super::generation::{Generation, Member, most_points};
 use super::mesh_groups::{Lines, Triangles};
 use super::mesh_shapes::{local, scene_outline, scenery_of, shape_boxes};
 use super::renderer::{Renderer, Stage, draw, placement_data};
@@ -25,7 +25,7 @@ use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// Generations that are kept before the smaller half of them is evaluated anew.
+/// Small generations that are kept before the smaller half of them is evaluated anew.
 const MOST_GENERATIONS: usize = 12;
 /// Lines are made for an error smaller by this, and kept while it is at most so much smaller twice over.
 const LINE_RESERVE: f64 = 2.0;
@@ -242,7 +242,7 @@ impl<'a> ExactScene<'a> {
             (self.trim, self.generations, self.sampled) = (options.trim, BTreeMap::new(), BTreeMap::new());
         }
         self.forget_levels(visible);
-        let worn = self.worn_generations();
+        let worn = self.worn_generations(gpu);
         let leave_out_backs = options.reject && options.section.is_none();
         let (mut counts, mut keys, mut wishes) = (FrameCounts::default(), Vec::new(), Vec::<Wish>::new());
         for level in &visible.levels {
@@ -285,85 +285,109 @@ impl<'a> ExactScene<'a> {
         wishes: Vec<Wish>,
         worn: &BTreeSet<u64>,
     ) -> Result<usize, GpuError> {
-        let mut by_resident: BTreeMap<usize, Vec<Wish>> = BTreeMap::new();
+        let mut by_generation: BTreeMap<Option<u64>, Vec<Wish>> = BTreeMap::new();
         for wish in wishes {
-            let ((shape, _), face) = wish.0;
-            by_resident.entry(self.homes[shape][face].resident).or_default().push(wish);
+            let (at, face) = wish.0;
+            by_generation.entry(self.sampled[&at][face].map(|s| s.generation)).or_default().push(wish);
         }
+        let mut by_resident: BTreeMap<usize, Vec<Wish>> = BTreeMap::new();
         let mut points = 0;
+        for (id, wishes) in by_generation {
+            match id.filter(|id| !worn.contains(id)) {
+                Some(id) if self.stays(id, &wishes) => points += self.again(gpu, renderer, id, &wishes)?,
+                _ => {
+                    for wish in wishes {
+                        let ((shape, _), face) = wish.0;
+                        by_resident.entry(self.homes[shape][face].resident).or_default().push(wish);
+                    }
+                }
+            }
+        }
         for (resident, wishes) in by_resident {
-            points += match self.same_again(gpu, renderer, &wishes, worn)? {
-                Some(points) => points,
-                None => self.new_generation(gpu, renderer, resident, &wishes)?,
-            };
+            points += self.new_generations(gpu, renderer, resident, &wishes)?;
         }
         Ok(points)
     }
 
-    /// Evaluates in place where the faces are all those of one generation and their samples stay; the number of points.
-    fn same_again(
+    /// True where the faces are all of a generation's and need no other samples.
+    fn stays(&self, id: u64, wishes: &[Wish]) -> bool {
+        let same = |((at, face), choice): &Wish| self.sampled[at][*face].is_some_and(|s| s.choice == *choice);
+        self.generations[&id].live == wishes.len() && wishes.iter().all(same)
+    }
+
+    /// Evaluates a generation in place after an edit of its surfaces; the number of points.
+    fn again(
         &mut self,
         gpu: &Gpu,
         renderer: &ExactRenderer,
+        id: u64,
         wishes: &[Wish],
-        worn: &BTreeSet<u64>,
-    ) -> Result<Option<usize>, GpuError> {
-        let samples = |s: &Self, (at, face): Key| s.sampled[&at][face];
-        let first = samples(self, wishes[0].0).filter(|s| !worn.contains(&s.generation));
-        let Some(first) = first else { return Ok(None) };
-        let stay = wishes.iter().all(|(key, choice)| {
-            samples(self, *key).is_some_and(|s| s.generation == first.generation && s.choice == *choice)
-        });
-        let Some(generation) = self.generations.get_mut(&first.generation) else { return Ok(None) };
-        if !stay || generation.live != wishes.len() {
-            return Ok(None);
-        }
-        let members = wishes.iter().filter_map(|((at, face), _)| {
-            let sampled = self.sampled[at][*face]?;
-            Some((sampled.index, self.homes[at.0][*face], self.scenery.shapes[at.0].middle))
-        });
-        generation.again(gpu, renderer, &self.residents[generation.resident], members)?;
-        let points = generation.points;
+    ) -> Result<usize, GpuError> {
+        let mut members = Vec::new();
         for ((at, face), _) in wishes {
             let slot = self.sampled.get_mut(at).and_then(|faces| faces[*face].as_mut());
-            slot.into_iter().for_each(|s| s.stale = false);
+            if let Some(sampled) = slot {
+                sampled.stale = false;
+                members.push((sampled.index, self.homes[at.0][*face], self.scenery.shapes[at.0].middle));
+            }
         }
-        Ok(Some(points))
+        let Some(generation) = self.generations.get_mut(&id) else { return Ok(0) };
+        generation.again(gpu, renderer, &self.residents[generation.resident], members.into_iter())?;
+        Ok(generation.points)
     }
 
-    fn new_generation(
+    /// New generations for faces of one resident, as many as the limits ask for; the number of points.
+    fn new_generations(
         &mut self,
         gpu: &Gpu,
         renderer: &ExactRenderer,
         resident: usize,
         wishes: &[Wish],
     ) -> Result<usize, GpuError> {
+        let most = most_points(gpu);
         let members: Vec<Member> = wishes
             .iter()
-            .map(|&(((shape, _), face), choice)| Member {
-                face: &self.exact.parts[shape].faces[face],
-                home: self.homes[shape][face],
-                middle: self.scenery.shapes[shape].middle,
-                choice,
+            .map(|((at, face), choice)| {
+                let middle = self.scenery.shapes[at.0].middle;
+                Member::new(
+                    &self.exact.parts[at.0].faces[*face],
+                    self.homes[at.0][*face],
+                    middle,
+                    choice,
+                    most,
+                )
             })
             .collect();
-        let stage = self.stage.buffers();
-        let made = Generation::new(gpu, renderer, &self.residents[resident], &members, self.trim, stage)?;
-        let points = made.points;
-        let id = self.next_generation;
-        self.next_generation += 1;
-        self.generations.insert(id, made);
-        for (index, &((at, face), choice)) in wishes.iter().enumerate() {
-            let slot = &mut self.sampled.get_mut(&at).expect("entered when the face was asked for")[face];
-            let old = slot.replace(Sampled { generation: id, index, choice, stale: false });
-            forget(&mut self.generations, old);
+        let (mut first, mut points) = (0, 0);
+        while first < members.len() {
+            let mut sum = members[first].points();
+            let mut end = first + 1;
+            while end < members.len() && sum + members[end].points() <= most {
+                sum += members[end].points();
+                end += 1;
+            }
+            let some = &members[first..end];
+            let stage = self.stage.buffers();
+            let made = Generation::new(gpu, renderer, &self.residents[resident], some, self.trim, stage)?;
+            points += made.points;
+            let id = self.next_generation;
+            self.next_generation += 1;
+            self.generations.insert(id, made);
+            for (index, &((at, face), choice)) in wishes[first..end].iter().enumerate() {
+                let slot = &mut self.sampled.get_mut(&at).expect("entered when the face was asked for")[face];
+                let old = slot.replace(Sampled { generation: id, index, choice, stale: false });
+                forget(&mut self.generations, old);
+            }
+            first = end;
         }
         Ok(points)
     }
 
-    /// Generations that are to be evaluated anew: of too many the smaller half, and those that are mostly unused.
-    fn worn_generations(&self) -> BTreeSet<u64> {
-        let mut by_use: Vec<(usize, u64)> = self.generations.iter().map(|(id, g)| (g.live, *id)).collect();
+    /// Generations that are to be evaluated anew: of too many small ones the smaller half, and those that are mostly unused.
+    fn worn_generations(&self, gpu: &Gpu) -> BTreeSet<u64> {
+        let small = |g: &Generation| 2 * g.points < most_points(gpu);
+        let mut by_use: Vec<(usize, u64)> =
+            self.generations.iter().filter(|(_, g)| small(g)).map(|(id, g)| (g.live, *id)).collect();
         by_use.sort_unstable();
         let worn = if by_use.len() > MOST_GENERATIONS { by_use.len() / 2 } else { 0 };
         let unused = self.generations.iter().filter(|(_, g)| 4 * g.live < g.draws());

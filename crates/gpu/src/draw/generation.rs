@@ -13,7 +13,7 @@ use crate::evaluate::storage;
 use crate::exact::{ExactFace, grid};
 use crate::{Evaluation, Gpu, GpuError, Request, Samples, Wanted};
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::ops::Range;
 use wgpu::{BindGroup, BindingResource, Buffer, RenderPass};
 
@@ -38,21 +38,47 @@ struct FaceData {
     spare: u32,
 }
 
-/// A face to be evaluated.
+/// A face to be evaluated, and where.
 pub(crate) struct Member<'a> {
     pub face: &'a ExactFace,
     pub home: Home,
     /// What the part's coordinates are relative to on the device.
-    pub middle: DVec3,
-    pub choice: Choice,
+    middle: DVec3,
+    texels: [f64; 2],
+    /// Native parameters of its grid, and pairs of places along its border.
+    grid: [Vec<f64>; 2],
+    border: Vec<DVec2>,
+}
+
+impl<'a> Member<'a> {
+    /// As `choice` says, or as finely as `most` points allow.
+    pub fn new(face: &'a ExactFace, home: Home, middle: DVec3, choice: &Choice, most: usize) -> Self {
+        let (mut steps, mut error) = (choice.steps, choice.error);
+        loop {
+            let (grid, border) = (grid(face, steps), face.border(error));
+            let member = Self { face, home, middle, texels: choice.texels, grid, border };
+            if member.points() <= most || steps == [1.0; 2] {
+                return member;
+            }
+            steps = steps.map(|s| (0.7 * s).floor().max(1.0));
+            error *= 2.0;
+        }
+    }
+
+    pub fn points(&self) -> usize {
+        self.grid[0].len() * self.grid[1].len() + self.border.len()
+    }
+}
+
+/// Points that fit into one binding; a generation has no more, so that no grid is cut.
+pub(crate) fn most_points(gpu: &Gpu) -> usize {
+    (gpu.binding_limit() / (Wanted::First.stride() * size_of::<f32>()) as u64) as usize
 }
 
 /// How one face of a generation is drawn.
 #[derive(Clone, Copy, Debug)]
 struct FaceDraw {
-    group: usize,
     vertices: u32,
-    border_group: usize,
     border_vertices: u32,
 }
 
@@ -64,8 +90,8 @@ pub(crate) struct Generation {
     faces: Buffer,
     data: Vec<FaceData>,
     draws: Vec<FaceDraw>,
-    /// Per buffer of points, of faces and of borders.
-    groups: Vec<[BindGroup; 2]>,
+    /// For faces and for borders.
+    groups: [BindGroup; 2],
     /// Faces that are still drawn from here.
     pub live: usize,
     /// All points.
@@ -73,7 +99,7 @@ pub(crate) struct Generation {
 }
 
 impl Generation {
-    /// Evaluates faces, all of one resident, for pictures trimmed in one way.
+    /// Evaluates faces, all of one resident and no more than [`most_points`] of them, for pictures trimmed in one way.
     pub fn new(
         gpu: &Gpu,
         renderer: &ExactRenderer,
@@ -89,31 +115,36 @@ impl Generation {
         let evaluation =
             evaluator.prepare(gpu, &resident.on_device, &resident.set, &samples, Wanted::First)?;
         evaluator.run(gpu, &evaluation)?;
-        let buffers: Vec<Range<usize>> = evaluation.buffers().map(|(_, range)| range).collect();
-        let draws = plan.place(&samples, &buffers);
+        let mut buffers = evaluation.buffers();
+        let (Some((points, _)), None) = (buffers.next(), buffers.next()) else {
+            return Err(GpuError::TooLarge {
+                what: "the samples of some faces".into(),
+                bytes: (samples.len() * Wanted::First.stride() * size_of::<f32>()) as u64,
+                limit: gpu.binding_limit(),
+                adapter: gpu.name().into(),
+            });
+        };
+        let draws = plan.place(&samples);
         let texture = match trim {
             Trim::Exact => None,
             Trim::Texture => Some(plan.draw_trims(gpu, renderer, resident, members)?),
         };
         let faces = storage(gpu, "the faces", &plan.faces)?;
         let places = storage(gpu, "the parameters of all grids", &plan.places)?;
-        let groups = evaluation.buffers().map(|(points, _)| {
-            let common = [(0, stage[0]), (1, stage[1]), (2, &faces), (3, points)];
-            let mut trimmed: Vec<_> = common.iter().map(|(k, b)| (*k, b.as_entire_binding())).collect();
-            trimmed.push((4, places.as_entire_binding()));
-            match &texture {
-                None => trimmed.extend([
-                    (5, resident.pieces.as_entire_binding()),
-                    (6, resident.lists.as_entire_binding()),
-                ]),
-                Some(texture) => trimmed.extend([
-                    (7, BindingResource::TextureView(&texture.view)),
-                    (8, BindingResource::Sampler(&renderer.textures.sampler)),
-                ]),
-            }
-            [bind_resources(gpu, renderer.faces(trim), trimmed), bind_group(gpu, &renderer.borders, &common)]
-        });
-        let groups = groups.collect();
+        let common = [(0, stage[0]), (1, stage[1]), (2, &faces), (3, points)];
+        let mut trimmed: Vec<_> = common.iter().map(|(k, b)| (*k, b.as_entire_binding())).collect();
+        trimmed.push((4, places.as_entire_binding()));
+        match &texture {
+            None => trimmed
+                .extend([(5, resident.pieces.as_entire_binding()), (6, resident.lists.as_entire_binding())]),
+            Some(texture) => trimmed.extend([
+                (7, BindingResource::TextureView(&texture.view)),
+                (8, BindingResource::Sampler(&renderer.textures.sampler)),
+            ]),
+        }
+        let groups =
+            [bind_resources(gpu, renderer.faces(trim), trimmed), bind_group(gpu, &renderer.borders, &common)];
+        drop(buffers);
         let (live, points, resident) = (members.len(), samples.len(), members[0].home.resident);
         Ok(Self { resident, evaluation, faces, data: plan.faces, draws, groups, live, points })
     }
@@ -146,14 +177,10 @@ impl Generation {
         pass: &mut RenderPass,
         faces: impl Iterator<Item = &'d (usize, Range<u32>)>,
     ) {
-        let mut bound = None;
+        pass.set_bind_group(0, &self.groups[0], &[]);
         for (index, placed) in faces {
-            let draw = self.draws[*index];
-            if bound.replace(draw.group) != Some(draw.group) {
-                pass.set_bind_group(0, &self.groups[draw.group][0], &[]);
-            }
             pass.set_immediates(0, bytemuck::bytes_of(&(*index as u32)));
-            pass.draw(0..draw.vertices, placed.clone());
+            pass.draw(0..self.draws[*index].vertices, placed.clone());
         }
     }
 
@@ -163,17 +190,10 @@ impl Generation {
         pass: &mut RenderPass,
         faces: impl Iterator<Item = &'d (usize, Range<u32>)>,
     ) {
-        let mut bound = None;
+        pass.set_bind_group(0, &self.groups[1], &[]);
         for (index, placed) in faces {
-            let draw = self.draws[*index];
-            if draw.border_vertices == 0 {
-                continue;
-            }
-            if bound.replace(draw.border_group) != Some(draw.border_group) {
-                pass.set_bind_group(0, &self.groups[draw.border_group][1], &[]);
-            }
             pass.set_immediates(0, bytemuck::bytes_of(&(*index as u32)));
-            pass.draw(0..draw.border_vertices, placed.clone());
+            pass.draw(0..self.draws[*index].border_vertices, placed.clone());
         }
     }
 }
@@ -190,9 +210,9 @@ impl Plan {
     fn push(&mut self, resident: &Resident, member: &Member) {
         let (face, home) = (member.face, member.home);
         let frame = resident.set.entries()[home.surface].frame;
-        let [us, vs] = grid(face, member.choice.steps);
+        let [us, vs] = &member.grid;
         let (row_u, row_v) = (self.places.len() as u32, (self.places.len() + us.len()) as u32);
-        for (axis, ts) in [&us, &vs].into_iter().enumerate() {
+        for (axis, ts) in [us, vs].into_iter().enumerate() {
             let (start, length) = (face.uv.min[axis], face.uv.size()[axis]);
             self.places.extend(ts.iter().map(|t| ((t - start) / length) as f32));
         }
@@ -218,29 +238,19 @@ impl Plan {
             us: us.iter().map(|&u| map.u.nurbs_from_native(u)).collect(),
             vs: vs.iter().map(|&v| map.v.nurbs_from_native(v)).collect(),
         });
-        let border = face.border(member.choice.error).into_iter().map(|p| map.nurbs_from_native(p)).collect();
+        let border = member.border.iter().map(|p| map.nurbs_from_native(*p)).collect();
         self.requests.push(Request::Points { surface, uvs: border });
     }
 
-    /// Tells the faces where their points are, in buffers of these ranges, and gives what is drawn of them.
-    fn place(&mut self, samples: &Samples<f32>, buffers: &[Range<usize>]) -> Vec<FaceDraw> {
-        let buffer_of =
-            |point: usize| buffers.partition_point(|b| b.end <= point).min(buffers.len().max(1) - 1);
+    /// Tells the faces where their points are, and gives what is drawn of them.
+    fn place(&mut self, samples: &Samples<f32>) -> Vec<FaceDraw> {
         let mut draws = Vec::new();
         for (index, face) in self.faces.iter_mut().enumerate() {
             let (own, border) = (samples.range(2 * index), samples.range(2 * index + 1));
-            let (group, border_group) = (buffer_of(own.start), buffer_of(border.start));
-            face.first = (own.start - buffers[group].start) as u32;
-            face.border = (border.start - buffers[border_group].start) as u32;
+            (face.first, face.border) = (own.start as u32, border.start as u32);
             let columns = own.len() as u32 / face.height;
-            // A border that is cut between two buffers is left to the lines.
-            let whole = border.end <= buffers[border_group].end;
-            draws.push(FaceDraw {
-                group,
-                vertices: 6 * (columns - 1) * (face.height - 1),
-                border_group,
-                border_vertices: if whole { 3 * border.len() as u32 } else { 0 },
-            });
+            let vertices = 6 * (columns - 1) * (face.height - 1);
+            draws.push(FaceDraw { vertices, border_vertices: 3 * border.len() as u32 });
         }
         draws
     }
@@ -257,8 +267,8 @@ impl Plan {
         let wishes: Vec<Trimmed> = trimmed
             .iter()
             .map(|&k| {
-                let Member { face, home, choice, .. } = &members[k];
-                Trimmed { texels: choice.texels, loops: &face.loops, first: home.cubics }
+                let Member { face, home, texels, .. } = &members[k];
+                Trimmed { texels: *texels, loops: &face.loops, first: home.cubics }
             })
             .collect();
         let texture = renderer.textures.draw(gpu, &wishes, &resident.cubics)?;
