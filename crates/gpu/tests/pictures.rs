@@ -90,6 +90,39 @@ fn corpus_models_look_as_they_did() {
     }
 }
 
+/// The models by which trimmed drawing is shown, by curves and by textures; close up a texture keeps to its own resolution.
+#[test]
+fn trimmed_surfaces_look_as_they_did() {
+    let star = View::At { eye: DVec3::new(6e4, -5e4, 4e4), target: DVec3::new(5e3, 1e3, 0.0) };
+    let cases = [
+        ("iv/duck.iv", Trim::Exact, "duck", small()),
+        ("iv/duck.iv", Trim::Texture, "duck_neck_texture", small().with_zoom(6.0)),
+        (
+            "iv/airplane_in_a_box.iv",
+            Trim::Exact,
+            "airplane_in_a_box",
+            small().with_projection(Projection::Perspective),
+        ),
+        ("iv/airplane_in_a_box.iv", Trim::Texture, "airplane_in_a_box_texture", small()),
+        ("iv/concave_trim.iv", Trim::Exact, "concave_trim", small()),
+        (
+            "iv/concave_trim.iv",
+            Trim::Texture,
+            "concave_trim_star_texture",
+            small().with_view(star).with_zoom(12.0),
+        ),
+        ("nested_loops.step", Trim::Texture, "nested_loops_texture", small()),
+        ("fillet_torus.step", Trim::Exact, "neighbours_close", small().with_zoom(5.0).with_lines(false)),
+    ];
+    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    for (model, trim, name, options) in cases {
+        let outcome = meshed(model, 0.05);
+        let options = options.with_trim(trim);
+        let (picture, _) = renderer.render_exact(gpu(), &faces, &mut on_device(&outcome), &options).unwrap();
+        hold_against(name, &picture);
+    }
+}
+
 /// Styles that show the mesh: more lines than the model's own edges, and no distance above the proven error.
 #[test]
 fn styles_of_the_mesh_show_it() {
@@ -159,6 +192,55 @@ fn exact_surfaces_look_like_a_fine_mesh() {
             assert!(share < 0.003, "{model} at zoom {zoom}: {:.2} % of the pixels differ", 100.0 * share);
         }
     }
+}
+
+/// With a mesh that departs by a hundred-thousandth of the model at most, the silhouettes of both modes are within a pixel of each
+/// other, without exception: every pixel that one shows is next to one that the other shows.
+#[test]
+fn silhouettes_are_those_of_a_mesh_at_1e_5() {
+    let models = [
+        "bracket.step",
+        "elliptic.step",
+        "cone_apex.step",
+        "sphere_holes.step",
+        "torus_hole.step",
+        "gear.step",
+        "pipe_elbow.step",
+        "far_from_origin.step",
+        "iv/duck.iv",
+        "iv/concave_trim.iv",
+    ];
+    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    for model in models {
+        let outcome = meshed(model, 0.001);
+        let mut exact = on_device(&outcome);
+        for (view, zoom) in [("iso", 1.0), ("front", 3.0)] {
+            let options = small()
+                .with_view(view.parse().unwrap())
+                .with_zoom(zoom)
+                .with_lines(false)
+                .with_background(Background::Transparent);
+            let (nurbs, _) = renderer.render_exact(gpu(), &faces, &mut exact, &options).unwrap();
+            let mesh = drawn(&outcome, &options);
+            for (name, a, b) in [("nurbs", &nurbs, &mesh), ("mesh", &mesh, &nurbs)] {
+                let alone = beyond_a_pixel(a, b);
+                // Needles thinner than a pixel end in a strip that is not.
+                let allowed = if model == "iv/concave_trim.iv" { 2 } else { 0 };
+                assert!(alone <= allowed, "{model} from {view}: {alone} pixels that {name} mode shows alone");
+            }
+        }
+    }
+}
+
+/// Pixels that `a` covers by more than a half and of whose neighbours in `b` none is touched.
+fn beyond_a_pixel(a: &Picture, b: &Picture) -> usize {
+    let (w, h) = (a.width as i64, a.height as i64);
+    let opacity =
+        |p: &Picture, x: i64, y: i64| p.pixels[(y.clamp(0, h - 1) * w + x.clamp(0, w - 1)) as usize][3];
+    let alone = |x: i64, y: i64| {
+        opacity(a, x, y) > 127 && (-1..=1).all(|dy| (-1..=1).all(|dx| opacity(b, x + dx, y + dy) == 0))
+    };
+    (0..h).map(|y| (0..w).filter(|&x| alone(x, y)).count()).sum()
 }
 
 /// Both ways of trimming look alike where texels are finer than pixels, and like a fine mesh: deep notches, holes with islands, windows.
