@@ -30,10 +30,9 @@ pub(crate) struct Choice {
 impl Choice {
     /// What an error in the part's units asks for.
     pub fn of(face: &ExactFace, error: f64) -> Self {
-        let most = face.border_bends().fold(0.0, f64::max);
         // A texel is half as large as the pixel that shows it: the error is half a pixel.
         let texels = face.stretch.map(|s| (s / error * (0.5 / PIXEL_ERROR)).clamp(TEXELS[0], TEXELS[1]));
-        Self { steps: steps(face, error), border: border_steps(most, error), texels, error }
+        Self { steps: steps(face, error), border: border_steps(face.border_bend, error), texels, error }
     }
 
     /// The same for samples that have to serve while the view moves.
@@ -68,7 +67,7 @@ impl ExactFace {
     }
 
     /// Per piece of the border how much its image bends, in the part's units, its parameter running over 0..=1.
-    fn border_bends(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn border_bends(&self) -> impl Iterator<Item = f64> {
         let [uu, uv, vv] = self.bends;
         let (size, stretch) = (self.uv.size(), DVec2::from(self.stretch));
         self.border_pieces().into_iter().map(move |piece| {

@@ -1,6 +1,7 @@
 //! Exact faces: the pipelines that evaluate and draw them.
 
 use super::Trim;
+use super::blocks::BlockIndices;
 use super::pipelines::pipeline;
 use super::trim_texture::TrimTextures;
 use crate::{Evaluator, Gpu, GpuError, Search, Variant, shaders};
@@ -15,6 +16,7 @@ pub struct ExactRenderer {
     textured: RenderPipeline,
     pub(crate) borders: RenderPipeline,
     pub(crate) textures: TrimTextures,
+    pub(crate) indices: BlockIndices,
 }
 
 impl ExactRenderer {
@@ -35,6 +37,7 @@ impl ExactRenderer {
                 textured: of(["vertex", "fragment_texture"]),
                 borders: of(["border_vertex", "border_fragment"]),
                 textures: TrimTextures::new(gpu),
+                indices: BlockIndices::new(gpu),
             })
         })
     }

@@ -15,7 +15,8 @@ struct Face {
     rectangle: vec4<f32>,    // its trim texture: corner and size in texture coordinates
     half_texel: vec2<f32>,   // of the unit square
     plane: u32,              // 4 layer + channel
-    spare: u32,
+    width: u32,              // points along u
+    borders: u32,            // pieces of its border
 }
 
 @group(0) @binding(2) var<storage, read> faces: array<Face>;
@@ -24,7 +25,31 @@ struct Face {
 @group(0) @binding(7) var trims: texture_2d_array<f32>;
 @group(0) @binding(8) var trim_sampler: sampler;
 
-var<immediate> face_index: u32;
+// Some cells of one face's grid, or some pieces of its border, in one placement.
+struct Block {
+    face: u32,
+    placement: u32,
+    first: u32,
+    spare: u32,
+}
+
+// Instances run through the blocks from `first`, once for each placement from `placement`.
+struct Batch {
+    first: u32,
+    records: u32,
+    placement: u32,
+    rows: u32,
+}
+
+@group(1) @binding(0) var<storage, read> blocks: array<Block>;
+
+var<immediate> batch: Batch;
+
+fn block_of(instance: u32) -> Block {
+    var block = blocks[batch.first + instance % batch.records];
+    block.placement += batch.placement + instance / batch.records;
+    return block;
+}
 
 struct ExactOut {
     @builtin(position) clip: vec4<f32>,
@@ -34,6 +59,7 @@ struct ExactOut {
     @location(2) @interpolate(perspective, sample) place: vec2<f32>,
     @location(3) @interpolate(flat) color: vec3<f32>,
     @location(4) @interpolate(flat) trim: vec2<u32>,
+    @location(5) @interpolate(flat) face: u32,
 }
 
 fn color_of(face: Face, placement: Placement) -> vec3<f32> {
@@ -52,13 +78,12 @@ fn normal_of(face: Face, number: u32) -> vec3<f32> {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> ExactOut {
-    let face = faces[face_index];
-    let placement = placements[instance];
-    let cell = index / 6u;
-    let corner = index % 6u;
-    let cells_v = face.height - 1u;
-    let i = cell / cells_v + select(0u, 1u, corner == 1u || corner == 3u || corner == 4u);
-    let j = cell % cells_v + select(0u, 1u, corner == 2u || corner == 4u || corner == 5u);
+    let block = block_of(instance);
+    let face = faces[block.face];
+    let placement = placements[block.placement];
+    // Cells beyond the grid have no size.
+    let i = min((block.first & 0xffffu) + index / (batch.rows + 1u), face.width - 1u);
+    let j = min((block.first >> 16u) + index % (batch.rows + 1u), face.height - 1u);
     let number = face.first + i * face.height + j;
     let p = placement.view * vec4<f32>(point_of(face, number), 1.0);
     var out: ExactOut;
@@ -68,6 +93,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     out.place = vec2<f32>(places[face.row_u + i], places[face.row_v + j]);
     out.color = color_of(face, placement);
     out.trim = vec2<u32>(face.lists, face.bands);
+    out.face = block.face;
     return out;
 }
 
@@ -83,20 +109,20 @@ fn fragment(in: ExactOut) -> @location(0) vec4<f32> {
 }
 
 // The same by the trim texture. No answer is interpolated with a neighbour's rectangle.
-fn inside_texture(place: vec2<f32>) -> bool {
-    if faces[face_index].bands == 0u {
+fn inside_texture(face: u32, place: vec2<f32>) -> bool {
+    if faces[face].bands == 0u {
         return true;
     }
-    let rectangle = faces[face_index].rectangle;
-    let half = faces[face_index].half_texel;
-    let plane = faces[face_index].plane;
+    let rectangle = faces[face].rectangle;
+    let half = faces[face].half_texel;
+    let plane = faces[face].plane;
     let at = rectangle.xy + rectangle.zw * clamp(place, half, 1.0 - half);
     return textureSampleLevel(trims, trim_sampler, at, plane / 4u, 0.0)[plane % 4u] >= 0.5;
 }
 
 @fragment
 fn fragment_texture(in: ExactOut) -> @location(0) vec4<f32> {
-    if is_cut(in.p) || !inside_texture(in.place) {
+    if is_cut(in.p) || !inside_texture(in.face, in.place) {
         discard;
     }
     if view.fill.a > 0.0 {
@@ -117,12 +143,15 @@ struct BorderOut {
 // the colours of what faces the eye.
 @vertex
 fn border_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> BorderOut {
-    let face = faces[face_index];
-    let placement = placements[instance];
-    let number = face.border + 2u * (index / 6u);
-    let corner = index % 6u;
-    let at_b = corner == 1u || corner == 2u || corner == 4u;
-    let side = select(-1.0, 1.0, corner == 2u || corner == 4u || corner == 5u);
+    let block = block_of(instance);
+    let face = faces[block.face];
+    let placement = placements[block.placement];
+    // Pieces beyond the last have no size.
+    let piece = min(block.first + index / 4u, face.borders - 1u);
+    let number = face.border + 2u * piece;
+    let corner = select(0u, index % 4u, piece == block.first + index / 4u);
+    let at_b = corner == 1u || corner == 2u;
+    let side = select(-1.0, 1.0, corner >= 2u);
     let a = placement.view * vec4<f32>(point_of(face, number), 1.0);
     let b = placement.view * vec4<f32>(point_of(face, number + 1u), 1.0);
     let ca = view.projection * a;

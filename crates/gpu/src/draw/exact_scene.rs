@@ -5,6 +5,7 @@
 //! 3. The others are evaluated together, in one dispatch for each resident, and become a generation (`generation.rs`).
 //! 4. Generations that hold little of use are evaluated anew with them, so that there are never many.
 
+use super::blocks::Blocks;
 use super::choice::Choice;
 use super::exact::ExactRenderer;
 use super::generation::{Generation, Member, most_points};
@@ -68,7 +69,16 @@ pub struct ExactScene<'a> {
     next_generation: u64,
     /// By shape and class, then by face.
     sampled: BTreeMap<(usize, i32), Vec<Option<Sampled>>>,
+    /// What is drawn of every generation.
+    lists: BTreeMap<u64, List>,
     target: Option<Target>,
+}
+
+/// Faces of a generation with the placements they are seen in, and their blocks.
+#[derive(Debug)]
+struct List {
+    drawn: Vec<(usize, Range<u32>)>,
+    blocks: Blocks,
 }
 
 /// Where a face's samples are.
@@ -117,6 +127,7 @@ impl<'a> ExactScene<'a> {
                 generations: BTreeMap::new(),
                 next_generation: 0,
                 sampled: BTreeMap::new(),
+                lists: BTreeMap::new(),
                 target: None,
                 scene,
                 model,
@@ -191,17 +202,17 @@ impl<'a> ExactScene<'a> {
             if options.lines {
                 self.refine_lines(gpu, renderer, &visible)?;
             }
-            let drawn = self.by_generation(&keys);
+            self.list_blocks(gpu, exact, &keys)?;
             let target = self.target.as_ref().expect("made above");
             draw(gpu, target, options.background, |pass| {
                 renderer.draw_triangles(gpu, pass, &self.stage, &self.triangles, &visible.placed);
                 pass.set_pipeline(exact.faces(self.trim));
-                for (id, faces) in &drawn {
-                    self.generations[id].draw_faces(pass, faces.iter());
+                for (id, list) in &self.lists {
+                    self.generations[id].draw_faces(pass, exact, &list.blocks);
                 }
                 pass.set_pipeline(&exact.borders);
-                for (id, faces) in &drawn {
-                    self.generations[id].draw_borders(pass, faces.iter());
+                for (id, list) in &self.lists {
+                    self.generations[id].draw_borders(pass, exact, &list.blocks);
                 }
                 if options.lines {
                     renderer.draw_lines(pass, &self.lines, &visible.placed);
@@ -240,6 +251,7 @@ impl<'a> ExactScene<'a> {
     ) -> Result<(FrameCounts, Vec<Seen>), GpuError> {
         if self.trim != options.trim {
             (self.trim, self.generations, self.sampled) = (options.trim, BTreeMap::new(), BTreeMap::new());
+            self.lists.clear();
         }
         self.forget_levels(visible);
         let worn = self.worn_generations(gpu);
@@ -390,7 +402,7 @@ impl<'a> ExactScene<'a> {
             self.generations.iter().filter(|(_, g)| small(g)).map(|(id, g)| (g.live, *id)).collect();
         by_use.sort_unstable();
         let worn = if by_use.len() > MOST_GENERATIONS { by_use.len() / 2 } else { 0 };
-        let unused = self.generations.iter().filter(|(_, g)| 4 * g.live < g.draws());
+        let unused = self.generations.iter().filter(|(_, g)| 4 * g.live < g.faces());
         by_use.iter().take(worn).map(|(_, id)| *id).chain(unused.map(|(id, _)| *id)).collect()
     }
 
@@ -416,15 +428,22 @@ impl<'a> ExactScene<'a> {
         }
     }
 
-    /// What is drawn of every generation.
-    fn by_generation(&self, keys: &[Seen]) -> BTreeMap<u64, Vec<(usize, Range<u32>)>> {
-        let mut found: BTreeMap<u64, Vec<_>> = BTreeMap::new();
+    /// What is drawn of every generation; lists that were made for the same faces before are kept.
+    fn list_blocks(&mut self, gpu: &Gpu, renderer: &ExactRenderer, keys: &[Seen]) -> Result<(), GpuError> {
+        let mut drawn: BTreeMap<u64, Vec<(usize, Range<u32>)>> = BTreeMap::new();
         for ((at, face), placed) in keys {
             if let Some(sampled) = self.sampled[at][*face] {
-                found.entry(sampled.generation).or_default().push((sampled.index, placed.clone()));
+                drawn.entry(sampled.generation).or_default().push((sampled.index, placed.clone()));
             }
         }
-        found
+        self.lists.retain(|id, _| drawn.contains_key(id));
+        for (id, drawn) in drawn {
+            if self.lists.get(&id).is_none_or(|list| list.drawn != drawn) {
+                let blocks = self.generations[&id].blocks(gpu, renderer, self.trim, &drawn)?;
+                self.lists.insert(id, List { drawn, blocks });
+            }
+        }
+        Ok(())
     }
 
     /// Makes lines as fine as the view needs, of the shapes whose lines do not serve.

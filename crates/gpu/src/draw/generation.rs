@@ -2,6 +2,7 @@
 //!
 //! Nothing of a generation changes but by an edit of its surfaces; faces that a later view needs otherwise go into a later one.
 
+use super::blocks::{Blocks, Cells};
 use super::choice::Choice;
 use super::exact::ExactRenderer;
 use super::mesh_shapes::{DEFAULT_COLOR, local};
@@ -35,7 +36,9 @@ struct FaceData {
     rectangle: [f32; 4],
     half_texel: [f32; 2],
     plane: u32,
-    spare: u32,
+    width: u32,
+    borders: u32,
+    spare: [u32; 3],
 }
 
 /// A face to be evaluated, and where.
@@ -75,13 +78,6 @@ pub(crate) fn most_points(gpu: &Gpu) -> usize {
     (gpu.binding_limit() / (Wanted::First.stride() * size_of::<f32>()) as u64) as usize
 }
 
-/// How one face of a generation is drawn.
-#[derive(Clone, Copy, Debug)]
-struct FaceDraw {
-    vertices: u32,
-    border_vertices: u32,
-}
-
 /// The points of some faces of one resident.
 #[derive(Debug)]
 pub(crate) struct Generation {
@@ -89,7 +85,7 @@ pub(crate) struct Generation {
     evaluation: Evaluation<f32>,
     faces: Buffer,
     data: Vec<FaceData>,
-    draws: Vec<FaceDraw>,
+    cells: Vec<Cells>,
     /// For faces and for borders.
     groups: [BindGroup; 2],
     /// Faces that are still drawn from here.
@@ -124,7 +120,7 @@ impl Generation {
                 adapter: gpu.name().into(),
             });
         };
-        let draws = plan.place(&samples);
+        let cells = plan.place(&samples);
         let texture = match trim {
             Trim::Exact => None,
             Trim::Texture => Some(plan.draw_trims(gpu, renderer, resident, members)?),
@@ -142,16 +138,29 @@ impl Generation {
                 (8, BindingResource::Sampler(&renderer.textures.sampler)),
             ]),
         }
-        let groups =
-            [bind_resources(gpu, renderer.faces(trim), trimmed), bind_group(gpu, &renderer.borders, &common)];
+        let groups = [
+            bind_resources(gpu, renderer.faces(trim), 0, trimmed),
+            bind_group(gpu, &renderer.borders, &common),
+        ];
         drop(buffers);
         let (live, points, resident) = (members.len(), samples.len(), members[0].home.resident);
-        Ok(Self { resident, evaluation, faces, data: plan.faces, draws, groups, live, points })
+        Ok(Self { resident, evaluation, faces, data: plan.faces, cells, groups, live, points })
     }
 
     /// Faces that it was made with.
-    pub fn draws(&self) -> usize {
-        self.draws.len()
+    pub fn faces(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// The blocks of some of them, each with the placements it is seen in.
+    pub fn blocks(
+        &self,
+        gpu: &Gpu,
+        renderer: &ExactRenderer,
+        trim: Trim,
+        drawn: &[(usize, Range<u32>)],
+    ) -> Result<Blocks, GpuError> {
+        Blocks::new(gpu, [renderer.faces(trim), &renderer.borders], &self.cells, drawn)
     }
 
     /// Evaluates all faces again after an edit of their control points that needs no other samples.
@@ -171,30 +180,16 @@ impl Generation {
         renderer.evaluator(resident.set.has_bezier()).run(gpu, &self.evaluation)
     }
 
-    /// Draws faces (their indices here and the placements each is seen in).
-    pub fn draw_faces<'d>(
-        &self,
-        pass: &mut RenderPass,
-        faces: impl Iterator<Item = &'d (usize, Range<u32>)>,
-    ) {
+    /// Draws faces.
+    pub fn draw_faces(&self, pass: &mut RenderPass, renderer: &ExactRenderer, blocks: &Blocks) {
         pass.set_bind_group(0, &self.groups[0], &[]);
-        for (index, placed) in faces {
-            pass.set_immediates(0, bytemuck::bytes_of(&(*index as u32)));
-            pass.draw(0..self.draws[*index].vertices, placed.clone());
-        }
+        blocks.draw_faces(pass, &renderer.indices);
     }
 
     /// Draws the strips along their borders.
-    pub fn draw_borders<'d>(
-        &self,
-        pass: &mut RenderPass,
-        faces: impl Iterator<Item = &'d (usize, Range<u32>)>,
-    ) {
+    pub fn draw_borders(&self, pass: &mut RenderPass, renderer: &ExactRenderer, blocks: &Blocks) {
         pass.set_bind_group(0, &self.groups[1], &[]);
-        for (index, placed) in faces {
-            pass.set_immediates(0, bytemuck::bytes_of(&(*index as u32)));
-            pass.draw(0..self.draws[*index].border_vertices, placed.clone());
-        }
+        blocks.draw_borders(pass, &renderer.indices);
     }
 }
 
@@ -242,17 +237,16 @@ impl Plan {
         self.requests.push(Request::Points { surface, uvs: border });
     }
 
-    /// Tells the faces where their points are, and gives what is drawn of them.
-    fn place(&mut self, samples: &Samples<f32>) -> Vec<FaceDraw> {
-        let mut draws = Vec::new();
+    /// Tells the faces where their points are, and how many cells they have.
+    fn place(&mut self, samples: &Samples<f32>) -> Vec<Cells> {
+        let mut cells = Vec::new();
         for (index, face) in self.faces.iter_mut().enumerate() {
             let (own, border) = (samples.range(2 * index), samples.range(2 * index + 1));
             (face.first, face.border) = (own.start as u32, border.start as u32);
-            let columns = own.len() as u32 / face.height;
-            let vertices = 6 * (columns - 1) * (face.height - 1);
-            draws.push(FaceDraw { vertices, border_vertices: 3 * border.len() as u32 });
+            (face.width, face.borders) = (own.len() as u32 / face.height, border.len() as u32 / 2);
+            cells.push(Cells { grid: [face.width - 1, face.height - 1], border: face.borders });
         }
-        draws
+        cells
     }
 
     /// Draws the trim texture, and tells the faces where they are in it.

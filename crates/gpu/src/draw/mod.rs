@@ -1,5 +1,6 @@
 //! Drawing: scenes of meshes or of exact surfaces, without a window, into a picture.
 
+mod blocks;
 mod camera;
 mod choice;
 mod exact;

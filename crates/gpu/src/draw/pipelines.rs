@@ -11,20 +11,21 @@ pub(crate) const SAMPLES: u32 = 4;
 /// A bind group of whole buffers, for a layout that the shader implies.
 pub(crate) fn bind_group(gpu: &Gpu, pipeline: &RenderPipeline, buffers: &[(u32, &Buffer)]) -> BindGroup {
     let resources: Vec<_> = buffers.iter().map(|(binding, b)| (*binding, b.as_entire_binding())).collect();
-    bind_resources(gpu, pipeline, resources)
+    bind_resources(gpu, pipeline, 0, resources)
 }
 
-/// A bind group of buffers, textures and samplers.
+/// A bind group of buffers, textures and samplers, by the number of the group.
 pub(crate) fn bind_resources(
     gpu: &Gpu,
     pipeline: &RenderPipeline,
+    group: u32,
     resources: Vec<(u32, BindingResource)>,
 ) -> BindGroup {
     let entries: Vec<_> =
         resources.into_iter().map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
-        layout: &pipeline.get_bind_group_layout(0),
+        layout: &pipeline.get_bind_group_layout(group),
         entries: &entries,
     })
 }

@@ -28,6 +28,8 @@ pub struct ExactFace {
     pub(crate) bends: [f64; 3],
     /// The largest |S_u|, |S_v| there, times the sides of `uv`: how long the unit square's sides become.
     pub(crate) stretch: [f64; 2],
+    /// How much the image of the most bent piece of its border bends.
+    pub(crate) border_bend: f64,
     /// Native parameters of lines at which the surface may have a kink.
     pub(crate) kinks: [Vec<f64>; 2],
     /// A box that holds the surface, in the part's units; `None` where weights allow none.
@@ -58,6 +60,7 @@ impl ExactFace {
         self.bounds = bounds(surface);
         self.outward = None;
         self.surface = surface.clone();
+        self.border_bend = self.border_bends().fold(0.0, f64::max);
     }
 }
 
@@ -114,7 +117,7 @@ fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters
     let parameters = surface.nurbs_parameters(uv).ok()?;
     let [kinks_u, kinks_v] = surface.breaks(uv);
     let (bends, stretch) = bends(surface, uv, [&kinks_u, &kinks_v]);
-    Some(ExactFace {
+    let face = ExactFace {
         face: 0,
         bounds: bounds(&nurbs),
         surface: nurbs,
@@ -127,7 +130,10 @@ fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters
         stretch,
         kinks: [kinks_u, kinks_v],
         outward: None,
-    })
+        border_bend: 0.0,
+    };
+    let border_bend = face.border_bends().fold(0.0, f64::max);
+    Some(ExactFace { border_bend, ..face })
 }
 
 /// The sides of triangles that one triangle alone has, as curves in the unit square; none where they are its border.
