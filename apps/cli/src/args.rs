@@ -68,6 +68,10 @@ pub struct MeshArgs {
     /// Write the edges of the model as lines too (GLB only).
     #[arg(long)]
     pub edges: bool,
+    /// Who evaluates faces with thousands of points: the CPU, or a GPU with double precision (needs a build with the feature
+    /// `render`). Errors are proven on the CPU either way.
+    #[arg(long, value_enum, default_value = "cpu")]
+    pub device: EvaluateArg,
     /// Write the report to this file, as JSON; one object for one input, a list for several.
     #[arg(long, value_name = "R.json")]
     pub report: Option<PathBuf>,
@@ -444,6 +448,13 @@ pub enum StyleArg {
     Curvature,
     /// Distance between the mesh and the exact surfaces.
     Error,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EvaluateArg {
+    Cpu,
+    /// Hardware if there is any, else a software device such as Mesa's lavapipe.
+    Gpu,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -5,6 +5,7 @@ mod bench;
 mod check;
 mod compare;
 mod convert;
+mod device;
 mod exit;
 mod guard;
 mod info;

@@ -1,6 +1,7 @@
 //! `chordal mesh`: one job per input.
 
 use crate::args::MeshArgs;
+use crate::device::Device;
 use crate::exit::{Exit, say};
 use crate::guard::guarded;
 use crate::outputs::{Outputs, plan};
@@ -15,8 +16,9 @@ const WARNINGS_SHOWN: usize = 3;
 pub fn run(args: &MeshArgs) -> Exit {
     let cancel = Cancel::default();
     stop_on_ctrl_c(&cancel);
-    let outputs = match check_report_path(args).and_then(|()| check_quads(args)).and_then(|()| plan(args)) {
-        Ok(outputs) => outputs,
+    let ready = check_report_path(args).and_then(|()| check_quads(args)).and_then(|()| Device::open(args));
+    let (device, outputs) = match ready.and_then(|device| Ok((device, plan(args)?))) {
+        Ok(ready) => ready,
         Err(sentence) => {
             say(&sentence);
             return Exit::Nothing;
@@ -24,7 +26,7 @@ pub fn run(args: &MeshArgs) -> Exit {
     };
     let mut batch = Batch::default();
     for (input, output) in args.inputs.iter().zip(outputs.files()) {
-        match mesh_one(args, input, output, &cancel) {
+        match mesh_one(args, &device, input, output, &cancel) {
             Ok(report) => batch.reports.push(report),
             Err(error) => {
                 say(&error);
@@ -35,6 +37,9 @@ pub fn run(args: &MeshArgs) -> Exit {
         if args.strict && !batch.failed.is_empty() {
             break;
         }
+    }
+    if !args.quiet {
+        device.tell();
     }
     finish(args, outputs, &mut batch)
 }
@@ -61,12 +66,18 @@ fn finish(args: &MeshArgs, outputs: Outputs, batch: &mut Batch) -> Exit {
     exit
 }
 
-fn mesh_one(args: &MeshArgs, input: &Path, output: &Path, cancel: &Cancel) -> Result<Report, String> {
+fn mesh_one(
+    args: &MeshArgs,
+    device: &Device,
+    input: &Path,
+    output: &Path,
+    cancel: &Cancel,
+) -> Result<Report, String> {
     let name = input.file_name().map_or_else(|| input.to_string_lossy(), |n| n.to_string_lossy());
     let bar = Bar::new(&name, args.quiet);
     let job = Job::new(input)
         .with_output(output)
-        .with_options(args.options())
+        .with_options(args.options().with_bulk(device.bulk()))
         .with_cancel(cancel.clone())
         .with_progress(bar.listener());
     let outcome = guarded(|| chordal::run(&job)).map_err(|e| format!("{}: {e}", input.display()))?;

@@ -26,6 +26,8 @@ mod drawing;
 mod edge_count;
 mod error;
 mod gaps;
+#[cfg(feature = "gpu")]
+mod gpu_evaluator;
 mod info;
 mod job;
 mod levels;
@@ -52,6 +54,8 @@ pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
 pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, StageEntry, compare, plot};
 pub use convert::{ConvertOptions, Converted, convert};
 pub use error::JobError;
+#[cfg(feature = "gpu")]
+pub use gpu_evaluator::GpuEvaluator;
 pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};
 pub use job::{Job, MeshedPart, Outcome, mesh_parts, read_model, read_model_with, run, thread_pool};
 pub use mesh_sewing::{LevelEntry, MeshSewing, MeshSewingReport, OpenBorderEntry, SEW_SCHEMA, sew_mesh_file};
@@ -81,7 +85,7 @@ pub use chordal_read::{ReadOptions, Winding};
 pub use chordal_sew as sew;
 pub use chordal_tessellate as tessellate;
 pub use chordal_tessellate::{
-    Bound, Cancel, Cut, EdgeMethod, EdgeMethodEntry, Fill, Strategy, StrategyEntry, Stretch,
+    Bound, Bulk, Cancel, Cut, EdgeMethod, EdgeMethodEntry, Fill, Strategy, StrategyEntry, Stretch,
 };
 pub use chordal_write as write;
 pub use chordal_write::{Format, Unit, UpAxis};

@@ -2,7 +2,7 @@
 
 use crate::{Sew, Tolerance};
 use chordal_read::ReadOptions;
-use chordal_tessellate::{Bound, EdgeMethod, Strategy};
+use chordal_tessellate::{Bound, Bulk, EdgeMethod, Strategy};
 use chordal_write::{Format, Unit, UpAxis};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -35,6 +35,8 @@ pub struct JobOptions {
     /// Whether loose faces are sewn before they are meshed.
     pub sew: Sew,
     pub bound: Bound,
+    /// Who evaluates many points of one surface at once; a GPU by `GpuEvaluator` (feature `gpu`).
+    pub bulk: Bulk,
     /// Threads; `None`: one per core. The result is the same bytes for any number.
     pub jobs: Option<usize>,
     /// Write nothing unless everything was done.
@@ -66,6 +68,7 @@ impl Default for JobOptions {
             read: ReadOptions::default(),
             sew: Sew::default(),
             bound: Bound::Proven,
+            bulk: Bulk::default(),
             jobs: None,
             strict: false,
             face_timeout: Some(Duration::from_secs(60)),
@@ -117,6 +120,10 @@ impl JobOptions {
     }
     pub fn with_bound(mut self, bound: Bound) -> Self {
         self.bound = bound;
+        self
+    }
+    pub fn with_bulk(mut self, bulk: Bulk) -> Self {
+        self.bulk = bulk;
         self
     }
     pub fn with_jobs(mut self, jobs: Option<usize>) -> Self {

@@ -84,6 +84,7 @@ pub fn resolve(
                 .with_strategy(options.strategy)
                 .with_quads(options.quads)
                 .with_edge_method(options.edge_method)
+                .with_bulk(options.bulk.clone())
                 .with_cells_recorded(options.debug_svg.is_some())
                 .with_face_timeout(options.face_timeout)
         })

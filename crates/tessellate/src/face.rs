@@ -4,6 +4,7 @@ mod finish;
 mod shape;
 
 use self::shape::{Shape, boundary_triangles, shape};
+use crate::bulk::Foreseen;
 use crate::chart::{FaceContext, Key, Segment};
 use crate::crossings::coarse_chords;
 use crate::metric::{Limits, Metric, Sizing};
@@ -126,6 +127,7 @@ pub(crate) struct FaceWork<'a, 's> {
     /// The surface at each chart vertex (not the mesh vertex, which may lie off it).
     pub xyz: Vec<DVec3>,
     pub normals: Vec<DVec3>,
+    pub foreseen: Foreseen,
     /// Chart points at poles: the normal there depends on where one comes from, so no edge turns by it.
     pub at_pole: Vec<bool>,
     /// Regularises metrics that vanish in some direction.
@@ -174,6 +176,7 @@ impl<'a, 's> FaceWork<'a, 's> {
             metrics: Vec::new(),
             xyz: Vec::new(),
             normals: Vec::new(),
+            foreseen: Foreseen::new(&options.bulk),
             at_pole: Vec::new(),
             floor: 0.0,
             shape,
@@ -215,7 +218,7 @@ impl<'a, 's> FaceWork<'a, 's> {
     /// Adds the geometry of one chart vertex.
     fn measure(&mut self, p_uv: DVec2) {
         let surface = self.context.surface;
-        let jet = surface.jet(p_uv);
+        let jet = self.foreseen.jet(surface, p_uv);
         let at_pole = surface.pole_at(jet.p, self.context.resolution).is_some();
         let sizing = if at_pole { None } else { Sizing::new(&jet, self.limits) };
         self.metrics.push(match sizing {
@@ -350,9 +353,10 @@ impl<'a, 's> FaceWork<'a, 's> {
 
     fn place_interior(&mut self) {
         let rows = Rows::new(self.context.surface, &self.chart, self.limits);
+        let points: Vec<DVec2> = rows.insertion_order().iter().map(|&p| self.chart.grid.snap(p)).collect();
+        self.foreseen.ask(self.context.surface, points.iter().copied());
         let mut hint = 0;
-        for p in rows.insertion_order() {
-            let p = self.chart.grid.snap(p);
+        for p in points {
             let at = self.mesh.locate(p, hint);
             let (Location::Inside(t) | Location::OnEdge(t, _)) = at else { continue };
             hint = t;

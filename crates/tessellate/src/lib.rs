@@ -4,6 +4,7 @@
 //! → trim + triangulate ([`triangulate`]) → prove ([`prove`]) → stitch ([`stitch`]).
 //! A face that finds an edge too coarse asks for it; requests are merged per round and only the faces touched run again.
 
+mod bulk;
 mod chart;
 mod crease;
 mod crossings;
@@ -26,6 +27,7 @@ mod surface;
 mod triangulate;
 mod unroll;
 
+pub use bulk::{Bulk, Evaluator};
 pub use edge_method::{Criterion, EdgeMethod, EdgeMethodEntry, LoopRow, loop_rows};
 pub use options::{Bound, Cancel, Options};
 pub use report::{FaceReport, PartReport, Phases, StageSeconds};

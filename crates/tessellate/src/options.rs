@@ -1,5 +1,6 @@
 //! What is asked of a mesh, in the units of the part.
 
+use crate::bulk::Bulk;
 use crate::edge_method::EdgeMethod;
 use crate::strategy::Strategy;
 use std::sync::Arc;
@@ -35,6 +36,8 @@ pub struct Options {
     /// Keep the quadrilaterals of the strategy, where it makes some, as pairs of triangles.
     pub quads: bool,
     pub edge_method: EdgeMethod,
+    /// Who evaluates many points of one surface at once.
+    pub bulk: Bulk,
     /// Report the cells of subdivisions, to be drawn.
     pub record_cells: bool,
     /// Time after which a face is given up.
@@ -54,6 +57,7 @@ impl Options {
             strategy: Strategy::Default,
             quads: false,
             edge_method: EdgeMethod::Default,
+            bulk: Bulk::default(),
             record_cells: false,
             face_timeout: None,
             face_triangles: 20_000_000,
@@ -89,6 +93,10 @@ impl Options {
     }
     pub fn with_edge_method(mut self, method: EdgeMethod) -> Self {
         self.edge_method = method;
+        self
+    }
+    pub fn with_bulk(mut self, bulk: Bulk) -> Self {
+        self.bulk = bulk;
         self
     }
     pub fn with_cells_recorded(mut self, record: bool) -> Self {

@@ -50,6 +50,11 @@ impl<'a> FaceSurface<'a> {
         self.wrap.point(self.surface, p_uv)
     }
 
+    /// The same point of the surface in its own domain.
+    pub fn wrapped(&self, p_uv: DVec2) -> DVec2 {
+        self.wrap.apply(p_uv)
+    }
+
     pub fn jet(&self, p_uv: DVec2) -> SurfaceJet {
         self.wrap.jet(self.surface, p_uv)
     }

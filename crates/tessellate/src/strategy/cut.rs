@@ -86,6 +86,8 @@ fn insert_corners(
     inside: &[bool],
     metric: Metric,
 ) -> Vec<Anchor> {
+    let within = borders.corners.iter().zip(inside).filter(|&(_, &inside)| inside);
+    work.foreseen.ask(work.context.surface, within.map(|(&p, _)| p));
     let mut hint = 0;
     let mut anchors = Vec::with_capacity(inside.len());
     for (i, &p) in borders.corners.iter().enumerate() {

@@ -76,13 +76,13 @@ impl Delaunay {
 
     fn fill_uniformly(&self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<usize, String> {
         let step = self.region.uv_box.size() / DVec2::new(self.lines[0] as f64, self.lines[1] as f64);
+        let clear = |p: &DVec2| self.region.contains(*p) && self.region.nearest(*p, step, BESIDE).is_none();
+        let points: Vec<DVec2> = self.grid().filter(clear).collect();
+        work.foreseen.ask(work.context.surface, points.iter().copied());
         let mut hint = 0;
         let mut count = 0;
-        for p in self.grid() {
-            if self.region.contains(p)
-                && self.region.nearest(p, step, BESIDE).is_none()
-                && self.insert(work, p, &mut hint)
-            {
+        for p in points {
+            if self.insert(work, p, &mut hint) {
                 count += 1;
                 if count % 256 == 0 {
                     check(count)?;

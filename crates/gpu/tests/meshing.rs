@@ -1,0 +1,92 @@
+//! Meshes whose points a device has evaluated keep the same promises as any.
+
+use chordal::gpu::DeviceChoice;
+use chordal::tessellate::{Bulk, Evaluator};
+use chordal::{GpuEvaluator, Job, JobOptions, Report, Tolerance};
+use chordal_nurbs::DVec2;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Spline surfaces, doubly curved.
+const MODELS: [&str; 3] = ["spline_ball.step", "blade.step", "fillet_bspline.step"];
+
+fn corpus(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name)
+}
+
+fn meshed(name: &str, strategy: &str, bulk: Bulk) -> Report {
+    let options = JobOptions::default()
+        .with_tolerance(Tolerance::Percent(0.05))
+        .with_strategy(chordal::Strategy::from_name(strategy).expect("a name"))
+        .with_bulk(bulk);
+    chordal::run(&Job::new(corpus(name)).with_options(options)).expect("it can be meshed").report
+}
+
+#[test]
+fn a_device_changes_no_promise() {
+    let device =
+        Arc::new(GpuEvaluator::open(DeviceChoice::Best).expect("a device with doubles").with_fewest(1));
+    for name in MODELS {
+        for strategy in ["default", "grid", "delaunay-uniform"] {
+            let before = device.work();
+            let host = meshed(name, strategy, Bulk::default());
+            let report = meshed(name, strategy, Bulk::new(device.clone()));
+            assert_eq!(device.failure(), None);
+            let (points, dispatches) = device.work();
+            assert!(points > before.0 && dispatches > before.1, "{name} {strategy}: the device did nothing");
+            assert_eq!(
+                (report.clean, report.watertight, report.faces.total),
+                (host.clean, host.watertight, host.faces.total),
+                "{name} {strategy}"
+            );
+            let proven = report.proven_error.expect("every face is proven");
+            assert!(proven <= report.options.tolerance, "{name} {strategy}: {proven}");
+            // The same points to rounding: next to the same mesh.
+            let ratio = report.triangles as f64 / host.triangles as f64;
+            assert!(
+                (0.99..=1.01).contains(&ratio),
+                "{name} {strategy}: {} for {}",
+                report.triangles,
+                host.triangles
+            );
+        }
+    }
+}
+
+#[test]
+fn a_device_that_goes_away_leaves_the_work_to_the_host() {
+    let device =
+        Arc::new(GpuEvaluator::open(DeviceChoice::Best).expect("a device with doubles").with_fewest(1));
+    device.gpu().device.destroy();
+    let report = meshed(MODELS[0], "default", Bulk::new(device.clone()));
+    let host = meshed(MODELS[0], "default", Bulk::default());
+    assert!(device.failure().is_some());
+    assert_eq!(
+        (report.clean, report.triangles, report.proven_error),
+        (host.clean, host.triangles, host.proven_error)
+    );
+}
+
+#[test]
+fn few_points_stay_here() {
+    let device = GpuEvaluator::open(DeviceChoice::Best).expect("a device with doubles").with_fewest(10);
+    let surface = chordal_nurbs::NurbsSurface::new(
+        [1, 1],
+        vec![0.0, 0.0, 1.0, 1.0],
+        vec![0.0, 0.0, 2.0, 2.0],
+        [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 3.0]]
+            .map(|[x, y]| chordal_nurbs::DVec3::new(x, y, x * y))
+            .into(),
+        None,
+    )
+    .expect("a quadrilateral");
+    let at: Vec<DVec2> = (0..10).map(|k| DVec2::new(0.1 * f64::from(k), 0.17 * f64::from(k))).collect();
+    assert!(device.jets(&surface, &at[..9]).is_none());
+    for (jet, &uv) in device.jets(&surface, &at).expect("enough points").iter().zip(&at) {
+        let exact = surface.jet(uv);
+        for (a, b) in [(jet.p, exact.p), (jet.du, exact.du), (jet.dv, exact.dv), (jet.duv, exact.duv)] {
+            assert!(a.distance(b) < 1e-14, "{uv}: {a} {b}");
+        }
+        assert!(jet.duu.length() < 1e-14 && jet.dvv.length() < 1e-14);
+    }
+}
