@@ -1,45 +1,18 @@
-//! `gpu-bench`: points a second of every kernel on the adapter that is there, and of one core of the host.
-//!
-//! Prints tables in Markdown; docs/gpu.md says how to run it and keeps what it printed.
+//! Points a second of every kernel.
 
+use crate::host;
+use crate::time::seconds;
 use chordal_gpu::{
-    DeviceChoice, Evaluator, Gpu, GpuError, HostSurface, OnDevice, Request, Samples, Search, SurfaceSet,
-    Variant, Wanted, host_peaks, sorted_by_span,
+    Evaluator, Gpu, GpuError, OnDevice, Request, Samples, Search, SurfaceSet, Variant, Wanted, sorted_by_span,
 };
 use chordal_nurbs::{DVec2, DVec3, NurbsCurve3, NurbsSurface};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Control points along each side of the paper's surface.
-const PAPER: usize = 12;
-/// No measurement goes on for longer.
-const PATIENCE: Duration = Duration::from_millis(1500);
-
-fn main() -> std::process::ExitCode {
-    match run() {
-        Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("gpu-bench: {error}");
-            std::process::ExitCode::from(2)
-        }
-    }
-}
-
-fn run() -> Result<(), GpuError> {
-    host()?;
-    if std::env::args().any(|a| a == "host") {
-        return Ok(());
-    }
-    let gpu = Gpu::open(DeviceChoice::Best)?;
-    let kind = if gpu.is_software() { ", a program on the CPU: no figure of a GPU" } else { "" };
-    println!("\nAdapter: {}{kind}\n", gpu.name());
-    single(&gpu)?;
-    batched(&gpu)?;
-    scattered(&gpu)?;
-    curves(&gpu)
-}
+pub const PAPER: usize = 12;
 
 /// A rational bicubic surface of n × n control points.
-fn surface(seed: usize, n: usize) -> NurbsSurface {
+pub fn surface(seed: usize, n: usize) -> NurbsSurface {
     let mut knots = vec![0.0; 4];
     knots.extend((1..n - 3).map(|k| k as f64 / (n - 3) as f64));
     knots.extend([1.0; 4]);
@@ -49,54 +22,8 @@ fn surface(seed: usize, n: usize) -> NurbsSurface {
     NurbsSurface::new([3, 3], knots.clone(), knots, points, Some(weights)).expect("knots and net fit")
 }
 
-/// One core of the host against what binds it: one patch, and the paper's surface of 9 × 9 spans.
-fn host() -> Result<(), GpuError> {
-    let spread: Vec<f64> = (0..1024).map(|k| f64::from(k) / 1023.0).collect();
-    println!("One core, 1024² points of a rational bicubic surface, f64, rows that stay in the cache:\n");
-    for (name, side) in [("one span", 4), ("9 × 9 spans", PAPER)] {
-        let mut set = SurfaceSet::<f64>::with_bezier();
-        set.push_surface(&surface(1, side));
-        let ready = HostSurface::new(&set, 0)?;
-        let peaks = host_peaks();
-        let (mut best, mut sum) = (f64::INFINITY, 0.0);
-        for _ in 0..200 {
-            let started = Instant::now();
-            ready.grid(&spread, &spread, |_, [x, _, z]| sum += x[7] + z[1000]);
-            best = best.min(started.elapsed().as_secs_f64());
-        }
-        std::hint::black_box(sum);
-        let rate = f64::from(1024 * 1024) / best * 1e-9;
-        let limits = [
-            (peaks.multiply_adds / 12.0, "multiply-adds alone"),
-            (peaks.divisions, "divisions alone"),
-            (peaks.both, "both in this proportion"),
-        ];
-        println!("- {name}: **{rate:.3} Gpoints/s**");
-        for (limit, what) in limits {
-            let limit = limit * 1e-9;
-            println!("  - {what} allow {limit:.3} Gpoints/s: {:.0} %", 100.0 * rate / limit);
-        }
-    }
-    Ok(())
-}
-
-/// The shortest of several runs of `work`, which waits for the device; the first one warms up.
-fn seconds(mut work: impl FnMut() -> Result<(), GpuError>) -> Result<f64, GpuError> {
-    work()?;
-    let (began, mut best) = (Instant::now(), f64::INFINITY);
-    for _ in 0..20 {
-        let started = Instant::now();
-        work()?;
-        best = best.min(started.elapsed().as_secs_f64());
-        if began.elapsed() > PATIENCE {
-            break;
-        }
-    }
-    Ok(best)
-}
-
 /// Points a second in millions: with all data on the device, and with everything uploaded each time.
-fn rates(
+pub fn rates(
     gpu: &Gpu,
     variant: Variant,
     set: &SurfaceSet<f32>,
@@ -119,20 +46,25 @@ fn rates(
     Ok([resident, uploaded].map(|s| samples.len() as f64 / s * 1e-6))
 }
 
+/// Prints a line a case and returns the best resident and uploaded rates of each, in points a second.
 fn table(
     gpu: &Gpu,
     title: &str,
     cases: &[(String, SurfaceSet<f32>, Samples<f32>)],
     wanted: Wanted,
-) -> Result<(), GpuError> {
+) -> Result<Vec<[f64; 2]>, GpuError> {
     println!("{title}, million points a second (resident / uploaded):\n");
     println!("| | {} |", Variant::ALL.map(Variant::name).join(" | "));
     println!("|---|{}", "---|".repeat(Variant::ALL.len()));
-    for (name, set, samples) in cases {
+    let mut best = vec![[0.0_f64; 2]; cases.len()];
+    for ((name, set, samples), best) in cases.iter().zip(&mut best) {
         let mut line = format!("| {name} |");
         for variant in Variant::ALL {
             line += &match rates(gpu, variant, set, samples, wanted) {
-                Ok([resident, uploaded]) => format!(" {resident:.2} / {uploaded:.2} |"),
+                Ok(rates) => {
+                    *best = [0, 1].map(|k| best[k].max(rates[k] * 1e6));
+                    format!(" {:.2} / {:.2} |", rates[0], rates[1])
+                }
                 Err(GpuError::TooLarge { .. }) => " beyond a binding |".into(),
                 Err(error) => return Err(error),
             };
@@ -140,27 +72,47 @@ fn table(
         println!("{line}");
     }
     println!();
-    Ok(())
+    Ok(best)
 }
 
-fn single(gpu: &Gpu) -> Result<(), GpuError> {
+/// One surface of growing grids, and where the device begins to gain on one core of the host.
+pub fn single(gpu: &Gpu) -> Result<(), GpuError> {
+    const SIDES: [usize; 8] = [8, 16, 32, 64, 128, 256, 512, 1024];
     for (title, wanted) in [
-        ("One surface, points", Wanted::Points),
+        ("One surface of 12 × 12 control points, points", Wanted::Points),
         ("One surface, points, first derivatives, normals", Wanted::First),
     ] {
         let mut cases = Vec::new();
-        for side in [8, 16, 32, 64, 128, 256, 512, 1024] {
+        for side in SIDES {
             let mut set = SurfaceSet::with_bezier();
             set.push_surface(&surface(1, PAPER));
             let samples = Samples::new(&set, &[Request::even_grid(&set, 0, side, side)])?;
             cases.push((format!("{side}²"), set, samples));
         }
-        table(gpu, title, &cases, wanted)?;
+        let best = table(gpu, title, &cases, wanted)?;
+        if wanted == Wanted::Points {
+            against_host(&SIDES, &best)?;
+        }
     }
     Ok(())
 }
 
-fn batched(gpu: &Gpu) -> Result<(), GpuError> {
+fn against_host(sides: &[usize], best: &[[f64; 2]]) -> Result<(), GpuError> {
+    println!(
+        "The best of these against one core of the host in double precision, million points a second:\n"
+    );
+    println!("| | host | resident / host | uploaded / host |");
+    println!("|---|---|---|---|");
+    for (&side, [resident, uploaded]) in sides.iter().zip(best) {
+        let host = host::rate(PAPER, side, 100)?;
+        println!("| {side}² | {:.0} | {:.3} | {:.3} |", host * 1e-6, resident / host, uploaded / host);
+    }
+    println!();
+    Ok(())
+}
+
+/// Many small surfaces at once.
+pub fn batched(gpu: &Gpu) -> Result<(), GpuError> {
     let mut set = SurfaceSet::with_bezier();
     for seed in 0..10_000 {
         set.push_surface(&surface(seed, 4));
@@ -170,10 +122,12 @@ fn batched(gpu: &Gpu) -> Result<(), GpuError> {
         let requests: Vec<_> = (0..set.len()).map(|i| Request::even_grid(&set, i, side, side)).collect();
         cases.push((format!("{side}² each"), set.clone(), Samples::new(&set, &requests)?));
     }
-    table(gpu, "10,000 patches of 4 × 4 control points in one dispatch, points", &cases, Wanted::Points)
+    table(gpu, "10,000 patches of 4 × 4 control points in one dispatch, points", &cases, Wanted::Points)?;
+    Ok(())
 }
 
-fn scattered(gpu: &Gpu) -> Result<(), GpuError> {
+/// Lists of points.
+pub fn scattered(gpu: &Gpu) -> Result<(), GpuError> {
     let mut set = SurfaceSet::with_bezier();
     set.push_surface(&surface(1, PAPER));
     let mut state = 1_u64;
@@ -188,10 +142,12 @@ fn scattered(gpu: &Gpu) -> Result<(), GpuError> {
         let samples = Samples::new(&set, &[Request::Points { surface: 0, uvs }])?;
         cases.push((name.into(), set.clone(), samples));
     }
-    table(gpu, "Scattered (u, v)", &cases, Wanted::Points)
+    table(gpu, "Scattered (u, v)", &cases, Wanted::Points)?;
+    Ok(())
 }
 
-fn curves(gpu: &Gpu) -> Result<(), GpuError> {
+/// One curve.
+pub fn curves(gpu: &Gpu) -> Result<(), GpuError> {
     // The knots of the paper's example.
     let knots = vec![0.0, 0.0, 0.0, 0.0, 0.1, 0.1, 0.5, 1.0, 1.0, 1.0, 1.0];
     let points = (0..7).map(|i| DVec3::new(f64::from(i), f64::from(i * i % 5), 1.0)).collect();
@@ -204,5 +160,42 @@ fn curves(gpu: &Gpu) -> Result<(), GpuError> {
         let samples = Samples::new(&set, &[Request::curve(0, ts)])?;
         cases.push((format!("{count}"), set, samples));
     }
-    table(gpu, "One cubic curve", &cases, Wanted::Points)
+    table(gpu, "One cubic curve", &cases, Wanted::Points)?;
+    Ok(())
+}
+
+/// What `chordal mesh --device gpu` asks for: points, first and second derivatives in double precision, there and back, against
+/// the host's own evaluator, point by point.
+pub fn mesher(gpu: &Gpu) -> Result<(), GpuError> {
+    if !gpu.has_f64() {
+        println!("No double precision in shaders here: `chordal mesh` evaluates on the CPU.\n");
+        return Ok(());
+    }
+    let surface = surface(1, PAPER);
+    let evaluator = Evaluator::<f64>::new(gpu, Variant::Bernstein, Search::Host)?;
+    println!(
+        "Point, first and second derivatives in f64 at scattered places of one surface, uploaded and read back,"
+    );
+    println!("million a second:\n");
+    println!("| points | device | one core |\n|---|---|---|");
+    for count in [64, 1024, 4096, 16_384, 65_536, 262_144] {
+        let uvs: Vec<DVec2> =
+            (1..=count).map(|k| (DVec2::new(0.754_877, 0.569_84) * f64::from(k)).fract()).collect();
+        let device = seconds(|| {
+            let mut set = SurfaceSet::<f64>::with_bezier();
+            set.push_surface(&surface);
+            let samples = Samples::new(&set, &[Request::Points { surface: 0, uvs: uvs.clone() }])?;
+            std::hint::black_box(evaluator.evaluate(gpu, &set, &samples, Wanted::Second)?);
+            Ok(())
+        })?;
+        let started = Instant::now();
+        for &uv in &uvs {
+            std::hint::black_box(surface.jet(uv));
+        }
+        let host = started.elapsed().as_secs_f64();
+        let rate = |seconds: f64| f64::from(count) / seconds * 1e-6;
+        println!("| {count} | {:.3} | {:.3} |", rate(device), rate(host));
+    }
+    println!();
+    Ok(())
 }

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Mesa's GLU NURBS on the scenes of `gpu-bench surfaces`: frames a second, as a table in Markdown. Needs a C compiler, GLU and
+# OSMesa with their headers; installs the latter two as root on Debian and Ubuntu, else says what to install.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+bench=${1:?usage: tools/glu_bench.sh path/to/gpu-bench [WIDTH HEIGHT]}
+width=${2:-640}
+height=${3:-480}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+build() { cc -O2 -std=c11 -D_POSIX_C_SOURCE=199309L tools/glu_bench.c -o "$work/glu_bench" -lGLU -lOSMesa -lm 2>"$work/cc.log"; }
+if ! build; then
+    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+        apt-get update -qq
+        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libglu1-mesa-dev libosmesa6-dev >/dev/null
+    fi
+    if ! build; then
+        cat "$work/cc.log" >&2
+        echo "NOT MEASURED: install a C compiler, GLU and OSMesa (Debian: apt-get install gcc libglu1-mesa-dev libosmesa6-dev)" >&2
+        exit 1
+    fi
+fi
+
+echo "| surfaces | seconds a frame | frames/s | shaded pixels |"
+echo "|---|---|---|---|"
+for count in 3 30 300 3000 30000; do
+    "$bench" --scene "$count" "$work/scene.txt"
+    read -r n _ _ seconds rate shaded < <("$work/glu_bench" "$work/scene.txt" "$width" "$height" "${GLU_BENCH_PICTURE:+$GLU_BENCH_PICTURE.$count.ppm}")
+    echo "| $n | $seconds | $rate | $shaded |"
+    if awk -v s="$seconds" 'BEGIN { exit !(s > 10) }'; then
+        echo
+        echo "A frame took more than 10 s: larger scenes are left out."
+        break
+    fi
+done
