@@ -38,6 +38,12 @@ impl Head {
     pub fn points(&self) -> u32 {
         if self.paired == 1 { self.width } else { self.width * self.height }
     }
+
+    /// The number of its tiles.
+    pub fn tiles(&self) -> usize {
+        let of = |count: u32, size: u32| count.div_ceil(size) as usize;
+        if self.paired == 1 { of(self.width, 64) } else { of(self.width, 8) * of(self.height, 8) }
+    }
 }
 
 /// 64 points of one head.

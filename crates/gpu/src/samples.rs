@@ -64,11 +64,13 @@ pub struct Samples<R> {
     pub(crate) row_directions: Vec<u32>,
     /// Per request: number of its first point, and how many it has.
     ranges: Vec<(usize, usize)>,
+    /// Per request: the end of its heads.
+    head_ends: Vec<usize>,
     points: usize,
 }
 
 /// Points of one head at most: outputs are cut between heads, whatever the size of a grid.
-const HEAD_POINTS: usize = 1 << 16;
+pub(crate) const HEAD_POINTS: usize = 1 << 16;
 
 impl<R: Real> Samples<R> {
     /// Prepares requests; spans are found here.
@@ -88,6 +90,7 @@ impl<R: Real> Samples<R> {
                 Request::Points { uvs, .. } => samples.push_points(set, surface, uvs),
             }
             samples.ranges.push((first, samples.points - first));
+            samples.head_ends.push(samples.heads.len());
             if samples.points > u32::MAX as usize {
                 return Err(GpuError::TooLarge {
                     what: "the list of points".into(),
@@ -166,12 +169,7 @@ impl<R: Real> Samples<R> {
                 height: vs.len() as u32,
                 ..self.head(set, surface)
             };
-            let index = self.heads.len() as u32;
-            for i in (0..width).step_by(8) {
-                self.tiles.extend((0..head.height).step_by(8).map(|j| Tile { head: index, i, j, spare: 0 }));
-            }
-            self.points += head.points() as usize;
-            self.heads.push(head);
+            self.push_head(head);
         }
     }
 
@@ -188,11 +186,57 @@ impl<R: Real> Samples<R> {
                 paired: 1,
                 ..self.head(set, surface)
             };
-            let index = self.heads.len() as u32;
-            self.tiles.extend((0..width).step_by(64).map(|i| Tile { head: index, i, j: 0, spare: 0 }));
-            self.points += head.points() as usize;
-            self.heads.push(head);
+            self.push_head(head);
         }
+    }
+
+    /// The heads of each request.
+    pub(crate) fn request_heads(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        let starts = std::iter::once(0).chain(self.head_ends.iter().copied());
+        starts.zip(&self.head_ends).map(|(start, &end)| start..end)
+    }
+
+    /// These heads by themselves, with the rows that they read; the first of their points is number 0.
+    pub(crate) fn part(&self, heads: std::ops::Range<usize>) -> Self {
+        let mut part = Self::default();
+        // The rows along v of a grid that is cut into heads are the same for all of them.
+        let mut shared = None;
+        for head in &self.heads[heads] {
+            let row_u = part.copy_rows(self, head.row_u, head.width);
+            let row_v = match shared {
+                Some((from, to)) if from == head.row_v && head.paired == 0 => to,
+                _ => {
+                    let count = if head.paired == 1 { head.width } else { head.height };
+                    part.copy_rows(self, head.row_v, count)
+                }
+            };
+            shared = (head.paired == 0).then_some((head.row_v, row_v));
+            part.push_head(Head { row_u, row_v, first: part.points as u32, ..*head });
+        }
+        part
+    }
+
+    fn copy_rows(&mut self, from: &Self, first: u32, count: u32) -> u32 {
+        let (at, range) = (self.ts.len() as u32, first as usize..(first + count) as usize);
+        self.row_spans.extend_from_slice(&from.row_spans[range.clone()]);
+        self.ts.extend_from_slice(&from.ts[range.clone()]);
+        self.parameters.extend_from_slice(&from.parameters[range.clone()]);
+        self.row_directions.extend_from_slice(&from.row_directions[range]);
+        at
+    }
+
+    fn push_head(&mut self, head: Head) {
+        let index = self.heads.len() as u32;
+        let tile = |i, j| Tile { head: index, i, j, spare: 0 };
+        if head.paired == 1 {
+            self.tiles.extend((0..head.width).step_by(64).map(|i| tile(i, 0)));
+        } else {
+            for i in (0..head.width).step_by(8) {
+                self.tiles.extend((0..head.height).step_by(8).map(|j| tile(i, j)));
+            }
+        }
+        self.points += head.points() as usize;
+        self.heads.push(head);
     }
 
     /// Rows without knots of their own.

@@ -330,10 +330,20 @@ fn what_exceeds_a_binding_is_split_or_refused() {
     // 84 bytes a point: no grid is so large that its heads do not fit.
     let second = direct.evaluate(&small, &set, &samples, Wanted::Second).unwrap();
     assert_eq!(second.values.len(), 21 * 1_000_000);
-    // Basis functions of all rows of a list, 300,000 parameters each way.
-    let uvs = vec![surface.domain().center(); 300_000];
-    let list = Samples::new(&set, &[Request::Points { surface: 0, uvs }]).unwrap();
-    let refused = evaluator(Variant::Indexed).evaluate(&small, &set, &list, Wanted::Points).err();
+    // A list whose basis functions take 34 MB, by all variants.
+    let domain = surface.domain();
+    let uvs = (0..300_000).map(|_| domain.min + domain.size() * DVec2::new(random.next(), random.next()));
+    let list = Samples::new(&set, &[Request::Points { surface: 0, uvs: uvs.collect() }]).unwrap();
+    for variant in Variant::ALL {
+        let here = evaluator(variant).evaluate(&small, &set, &list, Wanted::Points).unwrap();
+        let there = Evaluator::<f32>::new(gpu(), variant, Search::Host).unwrap();
+        let there = there.evaluate(gpu(), &set, &list, Wanted::Points).unwrap();
+        assert!(here.values == there.values, "{variant:?}");
+    }
+    // One head of the highest degree has more basis functions than fit.
+    let steep = set_of::<f32>(&[common::surface(&mut random, [100, 1], [1, 1])]);
+    let many = Samples::new(&steep, &[Request::even_grid(&steep, 0, 40_000, 2)]).unwrap();
+    let refused = evaluator(Variant::Packed).evaluate(&small, &steep, &many, Wanted::Points).err();
     let Some(GpuError::TooLarge { what, bytes, limit: said, .. }) = &refused else { panic!("{refused:?}") };
     assert!(*bytes > limit && *said == limit, "{what}: {bytes} of {said}");
     // Control points of a set that is too large.

@@ -1,5 +1,6 @@
 //! Evaluation behind one interface: five kernels, two ways to find spans, two precisions, on the device or by its twins.
 
+mod batches;
 mod on_device;
 mod run;
 

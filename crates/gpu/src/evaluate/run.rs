@@ -1,5 +1,6 @@
 //! Dispatches: passes over basis rows where the variant has them, then one over all points of all surfaces.
 
+use super::batches::batches as batches_of;
 use super::on_device::{empty_storage, storage};
 use super::{OnDevice, Plan, Search, Variant, Wanted};
 use crate::layout::Params;
@@ -59,7 +60,7 @@ impl<R: Real> Evaluator<R> {
     /// Uploads samples and makes room for the results. What is kept can be run again after an edit of the surfaces.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where the rows of all parameters exceed a binding; points are split.
+    /// [`GpuError::TooLarge`] where one list of points, or the knots of the set, exceed a binding; samples are split.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -68,75 +69,96 @@ impl<R: Real> Evaluator<R> {
         samples: &Samples<R>,
         wanted: Wanted,
     ) -> Result<Evaluation<R>, GpuError> {
-        let plan = Plan::new(set, samples, self.variant, wanted, self.search)?;
         gpu.watched("preparing an evaluation", || {
-            let rows = storage(gpu, "the rows of all parameters", &plan.tables.rows)?;
-            let ts = storage(gpu, "all parameters", &samples.ts)?;
-            let basis_bytes = 2 * (plan.tables.half * size_of::<R>()) as u64;
-            let basis =
-                empty_storage(gpu, "the basis functions of all rows", basis_bytes, BufferUsages::empty())?;
-            let passes = match &self.passes {
-                None => None,
-                Some(passes) => {
-                    let packs = storage(gpu, "packs", &plan.tables.packs)?;
-                    let own = storage(gpu, "the knots of all rows", &plan.tables.windows)?;
-                    let copied = self.variant != Variant::Indexed;
-                    let buffers = match self.variant {
-                        Variant::Packed => vec![(2, &packs), (4, &own), (7, &basis)],
-                        _ if copied => vec![(2, &rows), (3, &surfaces.spans), (4, &own), (7, &basis)],
-                        _ => vec![
-                            (2, &rows),
-                            (3, &surfaces.spans),
-                            (4, &surfaces.windows),
-                            (6, &ts),
-                            (7, &basis),
-                        ],
-                    };
-                    Some(bind(gpu, passes, &buffers))
-                }
-            };
-            let find = match &self.find {
-                None => None,
-                Some(find) => {
-                    let (directions, breaks) = set.search_tables();
-                    let directions = storage(gpu, "the directions of all surfaces", &directions)?;
-                    let breaks = storage(gpu, "all distinct knots", &breaks)?;
-                    let parameters = storage(gpu, "all parameters", &samples.parameters)?;
-                    let buffers = [(0, &directions), (1, &breaks), (2, &rows), (5, &parameters), (7, &ts)];
-                    Some((bind(gpu, find, &buffers), plan.tables.rows.len() as u32))
-                }
-            };
-            let heads = storage(gpu, "the grids", &samples.heads)?;
-            let tiles = storage(gpu, "the tiles of all grids", &samples.tiles)?;
-            let net = if self.variant == Variant::Bernstein { &surfaces.bezier } else { &surfaces.net };
-            let last = if self.passes.is_some() { &basis } else { &ts };
-            let mut outputs = Vec::new();
-            for batch in batches(samples, wanted.stride() * size_of::<R>(), gpu.binding_limit())? {
-                let bytes = (batch.points.len() * wanted.stride() * size_of::<R>()) as u64;
-                let out = empty_storage(gpu, "the points", bytes, BufferUsages::VERTEX)?;
-                let kernel = self.kernel(wanted);
-                let group = bind(
-                    gpu,
-                    kernel,
-                    &[
-                        (0, &heads),
-                        (1, &tiles),
-                        (2, &rows),
-                        (3, &surfaces.spans),
-                        (4, &surfaces.windows),
-                        (5, net),
-                        (6, last),
-                        (7, &out),
-                    ],
-                );
-                outputs.push(Output { batch, out, group });
+            let mut batches = Vec::new();
+            let mut first = 0;
+            for heads in batches_of(set, samples, (self.variant, wanted), gpu.binding_limit()) {
+                let part = samples.part(heads);
+                let points = first..first + part.len();
+                first = points.end;
+                batches.push(self.batch(gpu, surfaces, set, (&part, points), wanted)?);
             }
-            let levels = plan.tables.levels;
-            let pass_params = (1..=levels).map(|level| plan.params(level, self.variant)).collect();
-            let params =
-                Params { planes: plan.planes as u32, half: plan.tables.half as u32, ..Params::default() };
-            Ok(Evaluation { wanted, passes, pass_params, find, outputs, params, real: PhantomData })
+            Ok(Evaluation { wanted, batches, real: PhantomData })
         })
+    }
+
+    fn batch(
+        &self,
+        gpu: &Gpu,
+        surfaces: &OnDevice<R>,
+        set: &SurfaceSet<R>,
+        (samples, points): (&Samples<R>, Range<usize>),
+        wanted: Wanted,
+    ) -> Result<Batch, GpuError> {
+        let plan = Plan::new(set, samples, self.variant, wanted, self.search)?;
+        let rows = storage(gpu, "the rows of all parameters", &plan.tables.rows)?;
+        let ts = storage(gpu, "all parameters", &samples.ts)?;
+        let basis_bytes = 2 * (plan.tables.half * size_of::<R>()) as u64;
+        let basis =
+            empty_storage(gpu, "the basis functions of all rows", basis_bytes, BufferUsages::empty())?;
+        let heads = storage(gpu, "the grids", &samples.heads)?;
+        let tiles = storage(gpu, "the tiles of all grids", &samples.tiles)?;
+        let net = if self.variant == Variant::Bernstein { &surfaces.bezier } else { &surfaces.net };
+        let last = if self.passes.is_some() { &basis } else { &ts };
+        let bytes = (points.len() * wanted.stride() * size_of::<R>()) as u64;
+        let out = empty_storage(gpu, "the points", bytes, BufferUsages::VERTEX)?;
+        let buffers = [
+            (0, &heads),
+            (1, &tiles),
+            (2, &rows),
+            (3, &surfaces.spans),
+            (4, &surfaces.windows),
+            (5, net),
+            (6, last),
+            (7, &out),
+        ];
+        let group = bind(gpu, self.kernel(wanted), &buffers);
+        let levels = plan.tables.levels;
+        Ok(Batch {
+            passes: self.bind_passes(gpu, surfaces, &plan, (&rows, &ts, &basis))?,
+            pass_params: (1..=levels).map(|level| plan.params(level, self.variant)).collect(),
+            find: self.bind_find(gpu, set, samples, (&rows, &ts))?,
+            rows: plan.tables.rows.len() as u32,
+            tiles: samples.tiles.len() as u32,
+            params: Params { planes: plan.planes as u32, half: plan.tables.half as u32, ..Params::default() },
+            points,
+            out,
+            group,
+        })
+    }
+
+    fn bind_passes(
+        &self,
+        gpu: &Gpu,
+        surfaces: &OnDevice<R>,
+        plan: &Plan<R>,
+        (rows, ts, basis): (&Buffer, &Buffer, &Buffer),
+    ) -> Result<Option<BindGroup>, GpuError> {
+        let Some(passes) = &self.passes else { return Ok(None) };
+        let packs = storage(gpu, "packs", &plan.tables.packs)?;
+        let own = storage(gpu, "the knots of all rows", &plan.tables.windows)?;
+        let buffers = match self.variant {
+            Variant::Packed => vec![(2, &packs), (4, &own), (7, basis)],
+            Variant::Unpacked => vec![(2, rows), (3, &surfaces.spans), (4, &own), (7, basis)],
+            _ => vec![(2, rows), (3, &surfaces.spans), (4, &surfaces.windows), (6, ts), (7, basis)],
+        };
+        Ok(Some(bind(gpu, passes, &buffers)))
+    }
+
+    fn bind_find(
+        &self,
+        gpu: &Gpu,
+        set: &SurfaceSet<R>,
+        samples: &Samples<R>,
+        (rows, ts): (&Buffer, &Buffer),
+    ) -> Result<Option<BindGroup>, GpuError> {
+        let Some(find) = &self.find else { return Ok(None) };
+        let (directions, breaks) = set.search_tables();
+        let directions = storage(gpu, "the directions of all surfaces", &directions)?;
+        let breaks = storage(gpu, "all distinct knots", &breaks)?;
+        let parameters = storage(gpu, "all parameters", &samples.parameters)?;
+        let buffers = [(0, &directions), (1, &breaks), (2, rows), (5, &parameters), (7, ts)];
+        Ok(Some(bind(gpu, find, &buffers)))
     }
 
     fn kernel(&self, wanted: Wanted) -> &ComputePipeline {
@@ -160,18 +182,22 @@ impl<R: Real> Evaluator<R> {
     }
 
     fn encode(&self, pass: &mut ComputePass, evaluation: &Evaluation<R>) {
-        if let (Some(find), Some((group, rows))) = (&self.find, &evaluation.find) {
-            let count = rows.div_ceil(64);
+        // Kernel by kernel, so that the device may work on one batch while another ends.
+        for batch in &evaluation.batches {
+            let (Some(find), Some(group)) = (&self.find, &batch.find) else { continue };
+            let count = batch.rows.div_ceil(64);
             let groups = count.clamp(1, MOST_GROUPS);
             pass.set_pipeline(find);
             pass.set_bind_group(0, group, &[]);
-            pass.set_immediates(0, bytemuck::bytes_of(&Params { rows: *rows, groups, ..Params::default() }));
+            let params = Params { rows: batch.rows, groups, ..Params::default() };
+            pass.set_immediates(0, bytemuck::bytes_of(&params));
             pass.dispatch_workgroups(groups, count.div_ceil(groups), 1);
         }
-        if let (Some(passes), Some(group)) = (&self.passes, &evaluation.passes) {
+        for batch in &evaluation.batches {
+            let (Some(passes), Some(group)) = (&self.passes, &batch.passes) else { continue };
             pass.set_pipeline(passes);
             pass.set_bind_group(0, group, &[]);
-            for params in &evaluation.pass_params {
+            for params in &batch.pass_params {
                 let count = params.rows.div_ceil(8);
                 let groups = count.clamp(1, MOST_GROUPS);
                 pass.set_immediates(0, bytemuck::bytes_of(&Params { groups, ..*params }));
@@ -179,20 +205,12 @@ impl<R: Real> Evaluator<R> {
             }
         }
         pass.set_pipeline(self.kernel(evaluation.wanted));
-        for output in &evaluation.outputs {
-            let tiles = &output.batch.tiles;
-            let count = tiles.end - tiles.start;
-            let groups = count.clamp(1, MOST_GROUPS);
-            let params = Params {
-                tile0: tiles.start,
-                rows: tiles.end,
-                out0: output.batch.points.start,
-                groups,
-                ..evaluation.params
-            };
-            pass.set_bind_group(0, &output.group, &[]);
+        for batch in &evaluation.batches {
+            let groups = batch.tiles.clamp(1, MOST_GROUPS);
+            let params = Params { rows: batch.tiles, groups, ..batch.params };
+            pass.set_bind_group(0, &batch.group, &[]);
             pass.set_immediates(0, bytemuck::bytes_of(&params));
-            pass.dispatch_workgroups(groups, count.div_ceil(groups), 1);
+            pass.dispatch_workgroups(groups, batch.tiles.div_ceil(groups), 1);
         }
     }
 
@@ -218,50 +236,29 @@ impl<R: Real> Evaluator<R> {
 #[derive(Debug)]
 pub struct Evaluation<R> {
     wanted: Wanted,
-    passes: Option<BindGroup>,
-    pass_params: Vec<Params>,
-    find: Option<(BindGroup, u32)>,
-    outputs: Vec<Output>,
-    params: Params,
+    batches: Vec<Batch>,
     real: PhantomData<R>,
 }
 
-/// The points of one dispatch.
+/// What one dispatch evaluates.
 #[derive(Debug)]
-struct Output {
-    batch: Batch,
+struct Batch {
+    passes: Option<BindGroup>,
+    pass_params: Vec<Params>,
+    find: Option<BindGroup>,
+    rows: u32,
+    tiles: u32,
+    params: Params,
+    /// Which of all points.
+    points: Range<usize>,
     out: Buffer,
     group: BindGroup,
-}
-
-#[derive(Clone, Debug)]
-struct Batch {
-    tiles: Range<u32>,
-    points: Range<u32>,
-}
-
-/// Cuts the points between heads so that no output is larger than a binding.
-fn batches<R: Real>(samples: &Samples<R>, point_bytes: usize, limit: u64) -> Result<Vec<Batch>, GpuError> {
-    let mut found: Vec<Batch> = Vec::new();
-    let mut tile = 0;
-    for of_head in samples.tiles.chunk_by(|a, b| a.head == b.head) {
-        let head = samples.heads[of_head[0].head as usize];
-        let (end, tile_end) = (head.first + head.points(), tile + of_head.len() as u32);
-        match found.last_mut() {
-            Some(last) if u64::from(end - last.points.start) * point_bytes as u64 <= limit => {
-                (last.tiles.end, last.points.end) = (tile_end, end);
-            }
-            _ => found.push(Batch { tiles: tile..tile_end, points: head.first..end }),
-        }
-        tile = tile_end;
-    }
-    Ok(found)
 }
 
 impl<R: Real> Evaluation<R> {
     /// The buffers that the points are in, with the range of points of each.
     pub fn buffers(&self) -> impl Iterator<Item = (&Buffer, Range<usize>)> {
-        self.outputs.iter().map(|o| (&o.out, o.batch.points.start as usize..o.batch.points.end as usize))
+        self.batches.iter().map(|batch| (&batch.out, batch.points.clone()))
     }
 
     /// Brings the results to the host.
@@ -271,9 +268,9 @@ impl<R: Real> Evaluation<R> {
     pub fn read(&self, gpu: &Gpu) -> Result<Evaluated<R>, GpuError> {
         let stride = self.wanted.stride();
         let mut values = Vec::new();
-        for output in &self.outputs {
-            let bytes = (output.batch.points.len() * stride * size_of::<R>()) as u64;
-            let read = read_back(gpu, &output.out, bytes)?;
+        for batch in &self.batches {
+            let bytes = (batch.points.len() * stride * size_of::<R>()) as u64;
+            let read = read_back(gpu, &batch.out, bytes)?;
             values.extend(bytemuck::pod_collect_to_vec::<u8, R>(&read));
         }
         Ok(Evaluated { stride, values })

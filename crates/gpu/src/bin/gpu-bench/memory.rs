@@ -49,7 +49,9 @@ pub fn against_copies(gpu: &Gpu) -> Result<(), GpuError> {
         ("10,000 grids of 32²", 32, 10_000, 4),
     ] {
         let mut set = SurfaceSet::<f32>::with_bezier();
-        (0..count).for_each(|seed| drop(set.push_surface(&surface(seed, control))));
+        for seed in 0..count {
+            set.push_surface(&surface(seed, control));
+        }
         let requests: Vec<_> = (0..count).map(|i| Request::even_grid(&set, i, side, side)).collect();
         let samples = Samples::new(&set, &requests)?;
         for variant in [Variant::Direct, Variant::Bernstein] {

@@ -115,7 +115,9 @@ impl Scenario {
             let _ = writeln!(text, "{}", loops.len());
             for polygon in loops {
                 let _ = writeln!(text, "{}", polygon.len());
-                polygon.iter().for_each(|p| drop(writeln!(text, "{} {}", p.x, p.y)));
+                for p in polygon {
+                    let _ = writeln!(text, "{} {}", p.x, p.y);
+                }
             }
         }
         text
