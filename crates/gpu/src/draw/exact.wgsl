@@ -55,8 +55,7 @@ struct ExactOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) p: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    // Where the sample itself lies, so that the border is decided at every sample of a pixel.
-    @location(2) @interpolate(perspective, sample) place: vec2<f32>,
+    @location(2) place: vec2<f32>,
     @location(3) @interpolate(flat) color: vec3<f32>,
     @location(4) @interpolate(flat) trim: vec2<u32>,
     @location(5) @interpolate(flat) face: u32,
@@ -97,38 +96,55 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     return out;
 }
 
+struct Covered {
+    @location(0) color: vec4<f32>,
+    @builtin(sample_mask) samples: u32,
+}
+
+// The four samples of a pixel, from its middle.
+const SAMPLES_X = vec4<f32>(-0.125, 0.375, -0.375, 0.125);
+const SAMPLES_Y = vec4<f32>(-0.375, -0.125, 0.125, 0.375);
+
+// Colour is found once a pixel, what is trimmed at each of its samples.
 @fragment
-fn fragment(in: ExactOut) -> @location(0) vec4<f32> {
-    if is_cut(in.p) || !inside(in.trim.x, in.trim.y, in.place) {
+fn fragment(in: ExactOut) -> Covered {
+    let right = dpdx(in.place);
+    let down = dpdy(in.place);
+    let x = in.place.x + SAMPLES_X * right.x + SAMPLES_Y * down.x;
+    let y = in.place.y + SAMPLES_X * right.y + SAMPLES_Y * down.y;
+    let bits = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), inside(in.trim.x, in.trim.y, x, y));
+    return covered(in, bits.x | bits.y | bits.z | bits.w);
+}
+
+fn covered(in: ExactOut, samples: u32) -> Covered {
+    if is_cut(in.p) || samples == 0u {
         discard;
     }
     if view.fill.a > 0.0 {
-        return vec4<f32>(view.fill.rgb, 1.0);
+        return Covered(vec4<f32>(view.fill.rgb, 1.0), samples);
     }
-    return vec4<f32>(lit(in.color, in.normal, in.p), 1.0);
+    return Covered(vec4<f32>(lit(in.color, in.normal, in.p), 1.0), samples);
 }
 
-// The same by the trim texture. No answer is interpolated with a neighbour's rectangle.
-fn inside_texture(face: u32, place: vec2<f32>) -> bool {
-    if faces[face].bands == 0u {
-        return true;
-    }
-    let rectangle = faces[face].rectangle;
-    let half = faces[face].half_texel;
-    let plane = faces[face].plane;
-    let at = rectangle.xy + rectangle.zw * clamp(place, half, 1.0 - half);
-    return textureSampleLevel(trims, trim_sampler, at, plane / 4u, 0.0)[plane % 4u] >= 0.5;
-}
-
+// By the trim texture. No answer is interpolated with a neighbour's rectangle.
 @fragment
-fn fragment_texture(in: ExactOut) -> @location(0) vec4<f32> {
-    if is_cut(in.p) || !inside_texture(in.face, in.place) {
-        discard;
+fn fragment_texture(in: ExactOut) -> Covered {
+    let right = dpdx(in.place);
+    let down = dpdy(in.place);
+    if in.trim.y == 0u {
+        return covered(in, 15u);
     }
-    if view.fill.a > 0.0 {
-        return vec4<f32>(view.fill.rgb, 1.0);
+    let rectangle = faces[in.face].rectangle;
+    let half = faces[in.face].half_texel;
+    let plane = faces[in.face].plane;
+    var samples = 0u;
+    for (var k = 0u; k < 4u; k++) {
+        let place = in.place + SAMPLES_X[k] * right + SAMPLES_Y[k] * down;
+        let at = rectangle.xy + rectangle.zw * clamp(place, half, 1.0 - half);
+        let share = textureSampleLevel(trims, trim_sampler, at, plane / 4u, 0.0)[plane % 4u];
+        samples |= select(0u, 1u << k, share >= 0.5);
     }
-    return vec4<f32>(lit(in.color, in.normal, in.p), 1.0);
+    return covered(in, samples);
 }
 
 struct BorderOut {

@@ -46,6 +46,13 @@ impl Cubic {
         6.0 * (a - 2.0 * b + c).abs().max((b - 2.0 * c + d).abs())
     }
 
+    /// A box that holds the curve between two parameters.
+    pub fn bounds(&self, from: f64, to: f64) -> [DVec2; 2] {
+        let points = self.restricted(from, to);
+        let fold = |f: fn(DVec2, DVec2) -> DVec2| points.into_iter().reduce(f).unwrap_or_default();
+        [fold(DVec2::min), fold(DVec2::max)]
+    }
+
     /// The length of the control polygon along each axis.
     pub fn length_by_axis(&self) -> DVec2 {
         self.points.windows(2).map(|w| (w[1] - w[0]).abs()).sum()

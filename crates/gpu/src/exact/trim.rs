@@ -3,6 +3,9 @@
 //! Loops are cut into cubic Bézier pieces that rise in y. A face's unit square is cut into bands of y; each lists the
 //! pieces that reach into it. A point asks the pieces of its band only, and most of those are decided by their control
 //! points. Pieces share their ends to the bit and own their lower end only, so that a ray through a joint counts once.
+//!
+//! A map of square cells over the unit square comes first: cells that no loop enters are known to be inside or outside as a
+//! whole. Only points in the others, a few in a hundred, ask for pieces.
 
 use super::Cubic;
 
@@ -37,7 +40,12 @@ impl TrimTable {
             members[band_of(ys[0])..=band_of(ys[3])].iter_mut().for_each(|m| m.push(first + k as u32));
         }
         let at = self.lists.len() as u32;
-        let mut next = at + bands as u32 + 1;
+        let mut map = Map::of(loops);
+        self.lists.push(map.side as u32);
+        let map_at = self.lists.len();
+        // All cells are to be asked until they have been.
+        self.lists.extend(std::iter::repeat_n(u32::MAX, (map.side * map.side).div_ceil(16)));
+        let mut next = (self.lists.len() + bands + 1) as u32;
         self.lists.push(next);
         for m in &members {
             next += m.len() as u32;
@@ -45,7 +53,13 @@ impl TrimTable {
         }
         self.lists.extend(members.into_iter().flatten());
         self.pieces.extend(rising.into_iter().flatten());
-        TrimRange { at, bands: bands as u32 }
+        let range = TrimRange { at, bands: bands as u32 };
+        map.fill(|p| inside(self, range, p));
+        for (cell, state) in map.cells.iter().enumerate() {
+            let (word, shift) = (map_at + cell / 16, 2 * (cell % 16));
+            self.lists[word] = self.lists[word] & !(3 << shift) | state << shift;
+        }
+        range
     }
 }
 
@@ -56,20 +70,73 @@ impl TrimTable {
     }
 }
 
-#[cfg(test)]
+/// What is known of the cells of a unit square: 0 outside, 1 inside, 2 entered by a loop.
+struct Map {
+    side: usize,
+    cells: Vec<u32>,
+}
+
+/// Cells along a side, at least and at most.
+const SIDES: [f64; 2] = [16.0, 64.0];
+/// Parts of a piece whose boxes stand for it on the map.
+const PARTS: usize = 8;
+
+impl Map {
+    /// With the cells that loops enter marked, and those beside them within what single precision may move a curve.
+    fn of(loops: &[Cubic]) -> Self {
+        let side = (6.0 * (loops.len() as f64).sqrt()).clamp(SIDES[0], SIDES[1]) as usize;
+        let mut map = Self { side, cells: vec![0; side * side] };
+        let cell = |x: f64| ((x * side as f64).max(0.0) as usize).min(side - 1);
+        for piece in loops {
+            for k in 0..PARTS {
+                let [low, high] = piece.bounds(k as f64 / PARTS as f64, (k + 1) as f64 / PARTS as f64);
+                let (low, high) = (low - 1e-5, high + 1e-5);
+                for y in cell(low.y)..=cell(high.y) {
+                    map.cells[y * side..][cell(low.x)..=cell(high.x)].fill(2);
+                }
+            }
+        }
+        map
+    }
+
+    /// Asks one cell of every run of unmarked ones along a row for all of them.
+    fn fill(&mut self, inside: impl Fn([f32; 2]) -> bool) {
+        let side = self.side;
+        let middle = |k: usize| (k as f32 + 0.5) / side as f32;
+        for (y, row) in self.cells.chunks_mut(side).enumerate() {
+            let mut known = None;
+            for (x, state) in row.iter_mut().enumerate() {
+                if *state != 2 {
+                    let answer = *known.get_or_insert_with(|| u32::from(inside([middle(x), middle(y)])));
+                    *state = answer;
+                } else {
+                    known = None;
+                }
+            }
+        }
+    }
+}
+
 fn cubic([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     let s = 1.0 - t;
     ((a * s + 3.0 * b * t) * s + 3.0 * c * t * t) * s + d * t * t * t
 }
 
-/// As `inside` of the shader.
-#[cfg(test)]
+/// As `inside` of the shader, which asks for four places at once.
 pub(crate) fn inside(table: &TrimTable, range: TrimRange, p: [f32; 2]) -> bool {
     if range.bands == 0 {
         return true;
     }
+    let at = range.at as usize;
+    let side = table.lists[at] as usize;
+    let column = |x: f32| (x * side as f32).clamp(0.0, side as f32 - 1.0) as usize;
+    let cell = column(p[1]) * side + column(p[0]);
+    let known = table.lists[at + 1 + cell / 16] >> (2 * (cell % 16)) & 3;
+    if known < 2 {
+        return known == 1;
+    }
     let band = (p[1] * range.bands as f32).clamp(0.0, range.bands as f32 - 1.0) as usize;
-    let offset = |k: usize| table.lists[range.at as usize + band + k] as usize;
+    let offset = |k: usize| table.lists[at + 1 + (side * side).div_ceil(16) + band + k] as usize;
     let mut odd = false;
     for &piece in &table.lists[offset(0)..offset(1)] {
         let (xs, ys) = (table.pieces[2 * piece as usize], table.pieces[2 * piece as usize + 1]);
@@ -83,21 +150,23 @@ pub(crate) fn inside(table: &TrimTable, range: TrimRange, p: [f32; 2]) -> bool {
     odd
 }
 
-/// The parameter at which a rising piece has the height `y`.
-#[cfg(test)]
-fn at_height(ys: [f32; 4], y: f32) -> f32 {
+/// The parameter at which a rising piece has a height, as `at_heights` of the shader.
+fn at_height(ys: [f32; 4], height: f32) -> f32 {
     let (mut low, mut high) = (0.0, 1.0);
-    let mut t = (y - ys[0]) / (ys[3] - ys[0]);
+    let mut t = ((height - ys[0]) / (ys[3] - ys[0])).clamp(low, high);
     for _ in 0..12 {
-        let found = cubic(ys, t);
-        if found <= y {
+        let off = cubic(ys, t) - height;
+        if off.abs() <= 1e-7 {
+            break;
+        }
+        if off <= 0.0 {
             low = t;
         } else {
             high = t;
         }
         let s = 1.0 - t;
         let slope = 3.0 * ((ys[1] - ys[0]) * s * s + 2.0 * (ys[2] - ys[1]) * s * t + (ys[3] - ys[2]) * t * t);
-        let next = t + (y - found) / slope;
+        let next = t - off / slope;
         t = if next >= low && next <= high { next } else { 0.5 * (low + high) };
     }
     t
