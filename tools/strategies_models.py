@@ -3,22 +3,25 @@
 
     tools/strategies_models.py [--models ../shared/models/step] [--only PATTERN ...] [--skip PATTERN ...] [--largest KB]
                                [--strategies NAME ...] [--bounds proven estimated] [--tolerance 0.1%] [--jobs 2]
-                               [--timeout 120] [--reuse] [--no-verify] [--measure proven estimated] [--out out/strategies] [--results docs/results/strategies-models]
+                               [--timeout 120] [--reuse] [--keep] [--no-verify] [--measure proven estimated] [--most-triangles N] [--out out/strategies] [--results docs/results/strategies_models]
 
 One run of the binary per model, strategy and bound; the verifier's reference of a model is built once for all of its
 meshes. A run that does not end in --timeout seconds is a line that says so. Small files come first. Meshes are
-removed as soon as they are measured; reports stay in --out, and --reuse takes what lies there.
+removed as soon as they are measured, unless --keep leaves them for a later run with --reuse, which takes what lies in
+--out: mesh all files first, then measure as many as there is time for. A measurement is kept with the hash of its mesh
+and taken again for a mesh of the same bytes.
 """
 
 from __future__ import annotations
 
 import argparse
 import fnmatch
+import hashlib
 import json
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from measure_models import SUFFIXES, Meshing, Settings, expected_faces, measure_meshes, mesh_model
@@ -77,12 +80,14 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--bounds", nargs="+", default=["proven", "estimated"], choices=["proven", "estimated"])
     parser.add_argument("--tolerance", default="0.1%")
     parser.add_argument("--out", type=Path, default=Path("out/strategies"))
-    parser.add_argument("--results", type=Path, default=Path("docs/results/strategies-models"))
+    parser.add_argument("--results", type=Path, default=Path("docs/results/strategies_models"))
     parser.add_argument("--jobs", type=int, default=2, help="models at the same time")
     parser.add_argument("--timeout", type=float, default=120, help="seconds for meshing one file once")
     parser.add_argument("--verify-timeout", type=float, default=1800, help="seconds for measuring one file")
     parser.add_argument("--reuse", action="store_true", help="take what lies in --out already")
+    parser.add_argument("--keep", action="store_true", help="leave the meshes in --out, to be measured later")
     parser.add_argument("--measure", nargs="+", default=["proven", "estimated"], help="bounds whose meshes are measured")
+    parser.add_argument("--most-triangles", type=int, default=10**9, help="larger meshes are not measured")
     parser.add_argument("--no-verify", action="store_true", help="mesh only; the measured columns stay empty")
     return parser.parse_args()
 
@@ -108,17 +113,36 @@ def measure(model: Path, names: list[str], args: argparse.Namespace, expected: d
         for bound in args.bounds:
             settings = settings_for(args, args.out / model.name / f"{name}.{bound}", name, bound)
             runs.append((name, bound, mesh_model(model, args.tolerance, settings)))
-    measured = {}
-    if not args.no_verify:
-        settings = settings_for(args, args.out / model.name, "", "")
-        measured = measure_meshes(model, [run for _, bound, run in runs if bound in args.measure], settings)
+    measured = known_measurements(model, [run for _, bound, run in runs if bound in args.measure], args)
     for _, _, run in runs:
-        run.mesh.unlink(missing_ok=True)
+        if not args.keep:
+            run.mesh.unlink(missing_ok=True)
     lines = [line_of(name, bound, run, measured.get(str(run.mesh)), expected.get(model.name)) for name, bound, run in runs]
     judge(lines)
     bad = [f"{line.strategy} {line.bound}: {', '.join(line.faults)}" for line in lines if line.faults]
     print(f"{model.name}: {'; '.join(bad) or 'ok'}", file=sys.stderr, flush=True)
     return lines
+
+
+def known_measurements(model: Path, runs: list[Meshing], args: argparse.Namespace) -> dict[str, dict]:
+    """What the verifier says about each mesh, asked again only for meshes that it has not seen."""
+    kept = args.out / model.name / "measured.json"
+    known = json.loads(kept.read_text()) if kept.exists() else {}
+    hashes = {str(run.mesh): hashlib.sha256(run.mesh.read_bytes()).hexdigest() for run in runs if run.mesh.exists()}
+    new = [run for run in runs if hashes.get(str(run.mesh)) not in (None, *known) and small(run, args)]
+    if new and not args.no_verify:
+        settings = settings_for(args, args.out / model.name, "", "")
+        found = measure_meshes(model, new, replace(settings, reuse=False))
+        known |= {hashes[mesh]: result for mesh, result in found.items() if "error" not in result}
+        kept.write_text(json.dumps(known))
+    return {mesh: known[of_mesh] for mesh, of_mesh in hashes.items() if of_mesh in known}
+
+
+def small(run: Meshing, args: argparse.Namespace) -> bool:
+    """Whether the mesh is to be measured at all."""
+    if run.exit not in (0, 1) or not run.report.exists():
+        return False
+    return json.loads(run.report.read_text())["triangles"] <= args.most_triangles
 
 
 def settings_for(args: argparse.Namespace, out: Path, strategy: str, bound: str) -> Settings:

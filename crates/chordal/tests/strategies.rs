@@ -18,13 +18,6 @@ fn mesh(name: &str, strategy: Strategy, bound: Bound) -> Result<Report, String> 
 /// Models whose every triangle counts for the time that a test may take.
 const SLOW: &[&str] = &["degree_100", "degree_25", "degree_mixed", "weight_range", "weight_negative"];
 
-/// What does not come out clean yet, and why.
-const KNOWN: &[(&str, &str, &str)] =
-    &[("cone_apex", "delaunay-uniform", GRID_AT_APEX), ("cone_apex", "coving", GRID_AT_APEX)];
-
-const GRID_AT_APEX: &str =
-    "points on lines of the grid meet in the apex: an edge there turns by a hundredth of a degree too much";
-
 fn models() -> Vec<String> {
     let index = std::fs::read_to_string(corpus("x").with_file_name("INDEX.tsv")).expect("the corpus");
     index.lines().skip(1).filter_map(|l| l.split('\t').next()).map(str::to_owned).collect()
@@ -39,9 +32,6 @@ fn every_strategy_meshes_what_the_default_meshes() {
             continue;
         }
         for entry in Strategy::entries().iter().skip(1) {
-            if KNOWN.iter().any(|&(model, strategy, _)| (model, strategy) == (name, entry.name)) {
-                continue;
-            }
             match mesh(name, entry.strategy, Bound::Proven) {
                 Ok(report) if report.clean && report.watertight == default.watertight => {}
                 Ok(report) => wrong.push(format!("{name}, {}: {}", entry.name, report.undone.join("; "))),

@@ -4,10 +4,12 @@
 //! in that measure, and each is then checked by a proven bound. Faces never add boundary vertices on their own: what they find
 //! out later comes back as a request ([`EdgeSamples::split`]).
 
+mod turns;
+
+use self::turns::{turning_less, turning_less_between};
 use crate::edge_method::EdgeMethod;
 use crate::grid::settled;
 use crate::metric::{Limits, Sizing};
-use crate::prove::{TURN_LENGTH, turns_too_far};
 use crate::strategy::trace::Trace;
 use crate::surface::{FaceSurface, Near};
 use chordal_brep::{Edge, Part, Pcurve};
@@ -45,9 +47,6 @@ const DOUBLY_CURVED_CHORD: f64 = 0.9;
 
 /// Chords use this share of the tolerance: the bound of a facet over a chord is never quite as tight as the chord's own.
 const CHORD_AIM: f64 = 0.985;
-
-/// A chord is halved at most this often for the turn of a face along it.
-const MAX_HALVINGS: usize = 24;
 
 /// A chord of which nothing is proven is halved this often: shorter ones mostly have a bound, and where these have none no
 /// shorter one will.
@@ -143,6 +142,7 @@ impl EdgeSamples {
         self.fewest += Probes::new(curve, range, uses, [limits, of_faces]).curvature_total.ceil().max(1.0);
         let made = t.len();
         let before = self.t.len();
+        let t = turning_less_between(t, curve, range, uses, limits);
         self.add_halved(t, curve, range, uses, limits);
         self.trace.add("chords halved for the edge or a face's turn", self.t.len() - before - (made - 1));
     }
@@ -185,49 +185,6 @@ impl EdgeSamples {
         self.points = self.t.iter().map(|&t| curve.point(t)).collect();
         self.pin_ends(ends);
     }
-}
-
-/// Halves chords between whose ends a face turns further than allowed: it may bend where no probe was.
-fn turning_less(
-    mut t: Vec<f64>,
-    curve: &Curve,
-    range: Range,
-    uses: &[EdgeUse<'_, '_>],
-    limits: &Limits,
-) -> Vec<f64> {
-    // The ends may lie on creases: this much inside, normals belong to this piece.
-    let inside = Range::new(range.start + 1e-7 * range.length(), range.end - 1e-7 * range.length());
-    for one in uses.iter().filter(|u| !u.surface.is_elementary()) {
-        if limits.angle >= std::f64::consts::PI {
-            break;
-        }
-        let mut near = None;
-        let mut at = |t: f64| {
-            let t = inside.clamp(t);
-            let p = curve.point(t);
-            let place = one.parameters(p, t, range, near);
-            near = Some(place);
-            (t, p, one.surface.normal(place.uv))
-        };
-        let mut fine = vec![t[0]];
-        let mut last = at(t[0]);
-        for &end in &t[1..] {
-            let mut ends = vec![end];
-            while let Some(&next) = ends.last() {
-                let ahead = at(next);
-                let long = last.1.distance(ahead.1) > TURN_LENGTH * limits.tolerance;
-                if long && ends.len() < MAX_HALVINGS && turns_too_far(last.2, ahead.2, limits.angle) {
-                    ends.push(0.5 * (last.0 + ahead.0));
-                    continue;
-                }
-                fine.push(next);
-                last = ahead;
-                ends.pop();
-            }
-        }
-        t = fine;
-    }
-    t
 }
 
 fn split_where(t: &[f64], too_far: impl Fn(f64, f64) -> bool) -> Vec<f64> {

@@ -196,7 +196,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         let verdict = match options.strategy {
             Strategy::Default => {
                 work.fill_by_rows();
-                prover.refine(&mut work)?
+                strategy::refine_opened(&mut work, &mut prover)?
             }
             _ => strategy::fill(&mut work, &mut prover, options)?,
         };

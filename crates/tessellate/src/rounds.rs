@@ -6,10 +6,11 @@ use crate::face::{FaceResult, Outcome, mesh_face};
 use crate::looseness::pcurve_gap;
 use crate::lower_bound::lower_bound;
 use crate::metric::Limits;
-use crate::options::{Cancel, Options};
+use crate::options::{Bound, Cancel, Options};
 use crate::orient::{settle_orientation, turn_inside_out};
 use crate::report::{FaceReport, PartReport};
 use crate::stitch::stitch;
+use crate::strategy::Strategy;
 use crate::surface::FaceSurface;
 use chordal_brep::{Edge, Face, FaceGeometry, Loop, Part, Pcurve};
 use chordal_mesh::PartMesh;
@@ -71,6 +72,8 @@ struct Job<'a> {
     resolution: f64,
     surfaces: Vec<Option<FaceSurface<'a>>>,
     info: Vec<EdgeInfo<'a>>,
+    /// Faces that another strategy could not prove, with the options of the default one.
+    left: Option<(Options, Vec<bool>)>,
 }
 
 /// Meshes one part. Never fails as a whole: a face that cannot be meshed is reported with its reason.
@@ -87,7 +90,7 @@ pub fn tessellate_part(
     let resolution = resolution(part, options.tolerance);
     let exact: Vec<Option<std::borrow::Cow<'_, Surface>>> = part.faces.iter().map(exact_surface).collect();
     let surfaces = exact.iter().map(|s| s.as_deref().map(|s| FaceSurface::new(s, resolution))).collect();
-    let job = Job {
+    let mut job = Job {
         part,
         limits: Limits {
             tolerance: AIM * options.tolerance,
@@ -100,6 +103,7 @@ pub fn tessellate_part(
         resolution,
         surfaces,
         info: edge_info(part),
+        left: None,
     };
     report.seconds.heal = clock.elapsed().as_secs_f64();
 
@@ -109,7 +113,8 @@ pub fn tessellate_part(
     edges.iter().for_each(|e| report.edge_trace.merge(&e.trace));
 
     let clock = Instant::now();
-    let outcomes = job.rounds(&mut edges, &mut report, done);
+    let mut outcomes = job.rounds(&mut edges, &mut report, done);
+    job.leave_to_default(&mut edges, &mut outcomes, &mut report);
     report.seconds.faces = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
@@ -235,8 +240,12 @@ impl Job<'_> {
                 accept,
                 resolution: self.resolution,
             };
+            let options = match &self.left {
+                Some((default, faces)) if faces[index] => default,
+                _ => self.options,
+            };
             // The one place where a panic of ours becomes a face's failure.
-            catch_unwind(AssertUnwindSafe(|| mesh_face(&context, &self.limits, self.options, self.cancel)))
+            catch_unwind(AssertUnwindSafe(|| mesh_face(&context, &self.limits, options, self.cancel)))
                 .unwrap_or_else(|_| Outcome::Failed("internal error".into()))
         };
         match attempt(round >= LAST_RESORT, round == MAX_ROUNDS) {
@@ -306,6 +315,47 @@ impl Job<'_> {
             dirty.dedup();
         }
         results
+    }
+
+    /// Faces that have no triangles, or no proof where one was asked for.
+    fn undone(&self, outcomes: &[Result<Box<FaceResult>, String>]) -> Vec<bool> {
+        let allowed = self.limits.tolerance.max(self.limits.boundary);
+        let is_undone = |outcome: &Result<Box<FaceResult>, String>| match outcome {
+            Err(_) => true,
+            // Of NaN nothing is proven either.
+            Ok(result) => self.options.bound == Bound::Proven && !(result.proven_error <= allowed),
+        };
+        let faces = self.part.faces.iter().zip(outcomes);
+        faces.map(|(face, outcome)| unusable(face).is_none() && is_undone(outcome)).collect()
+    }
+
+    /// Meshes the part once more where another strategy left faces undone, those by the default strategy from the first
+    /// round on: where a file is loose, loops cross the sooner the finer they are, and a strategy may have asked for
+    /// chords that the default can do without.
+    fn leave_to_default(
+        &mut self,
+        edges: &mut Vec<EdgeSamples>,
+        outcomes: &mut Vec<Result<Box<FaceResult>, String>>,
+        report: &mut PartReport,
+    ) {
+        let undone = self.undone(outcomes);
+        let count = |faces: &[bool]| faces.iter().filter(|&&f| f).count();
+        if self.options.strategy == Strategy::Default || count(&undone) == 0 || self.cancel.is_cancelled() {
+            return;
+        }
+        self.left = Some((Options { strategy: Strategy::Default, ..self.options.clone() }, undone.clone()));
+        let before = report.rounds;
+        let mut again = self.sample_edges();
+        let mut found = self.rounds(&mut again, report, &|_| ());
+        if count(&self.undone(&found)) >= count(&undone) {
+            report.rounds = before;
+            return;
+        }
+        let left = found.iter_mut().zip(&undone).filter(|(_, left)| **left);
+        for result in left.filter_map(|(outcome, _)| outcome.as_mut().ok()) {
+            result.trace.add("faces left to the default strategy", 1);
+        }
+        (*edges, *outcomes) = (again, found);
     }
 
     fn describe(

@@ -35,11 +35,13 @@ mod region;
 mod restored;
 mod run;
 mod scanlines;
+mod size;
 #[cfg(test)]
 mod testing;
 mod tracking;
 
 pub use delaunay::Fill;
+pub(crate) use poles::refine_opened;
 pub use quadtree::Stretch;
 pub(crate) use run::fill;
 

@@ -11,7 +11,8 @@
 //!   │ o────o────o──o│        ╱ coving triangles
 //! ```
 //!
-//! As a strategy the region is that of a uniform grid's cells that keep clear of the loops.
+//! As a strategy the region is that of a uniform grid's cells that keep clear of the loops. Where a triangle of the strip spans
+//! too much ([`super::size`]), no cell had room: the grid gets twice as many lines across, until one has.
 
 use super::bezier::{fan, halves};
 use super::borders::Borders;
@@ -21,7 +22,8 @@ use super::node::Measure;
 use super::plain::mean_metric;
 use super::poles::open_out;
 use super::region::Region;
-use super::run::{Check, Method};
+use super::run::{Check, Method, restore};
+use super::size::oversized;
 use crate::face::FaceWork;
 use crate::triangulate::{Triangulation, sweep};
 use chordal_nurbs::{DVec2, UvBox};
@@ -61,11 +63,18 @@ pub(crate) struct Coving {
     cells: Cells,
     tolerance: f64,
     measure: Measure,
+    grid: UniformGrid,
     halvings: usize,
 }
 
 /// All cells are halved at most this often.
 const HALVINGS: usize = 2;
+
+/// A grid gets twice as many lines in one direction at most this often, for want of room.
+const DOUBLINGS: usize = 4;
+
+/// No grid gets more cells than this for want of room.
+const MOST_CELLS: usize = 40_000;
 
 impl Coving {
     /// # Errors
@@ -74,8 +83,64 @@ impl Coving {
         let region = Region::new(&work.chart);
         let tolerance = work.limits.tolerance;
         let mut cells = Cells::new(work.context.surface, region.uv_box, tolerance)?;
-        cells.begin(&UniformGrid, &region, tolerance);
-        Ok(Self { region, cells, tolerance, measure, halvings: 0 })
+        let grid = UniformGrid::COARSEST;
+        cells.begin(&grid, &region, tolerance);
+        Ok(Self { region, cells, tolerance, measure, grid, halvings: 0 })
+    }
+
+    /// Triangles that span too much, and the direction in which the first of them does.
+    fn too_wide(&self, work: &FaceWork<'_, '_>) -> (usize, usize) {
+        let triangles = 0..work.mesh.triangles.len() as u32;
+        let mut found = triangles.filter_map(|t| oversized(work, &self.region, t, self.tolerance));
+        found.next().map_or((0, 0), |first| (1 + found.count(), first.axis))
+    }
+
+    /// Lays down a grid with so many times as many lines.
+    ///
+    /// # Errors
+    /// A sentence, where the surface has no NURBS form.
+    fn regrid(&mut self, work: &FaceWork<'_, '_>, finer: [usize; 2]) -> Result<(), String> {
+        self.grid = UniformGrid { finer };
+        self.cells = Cells::new(work.context.surface, self.region.uv_box, self.tolerance)?;
+        self.cells.begin(&self.grid, &self.region, self.tolerance);
+        Ok(())
+    }
+
+    /// The cells, the strip between them and the loops; false where the loops cross.
+    fn lay(&self, work: &mut FaceWork<'_, '_>) -> bool {
+        let metric = mean_metric(work.context.surface, self.region.uv_box);
+        work.metrics.fill(metric);
+        let inner = self.inner();
+        let borders = Borders::new(&inner);
+        let first = work.chart.points.len() as u32;
+        let rings: Vec<Vec<u32>> = rings(&borders, &inner)
+            .into_iter()
+            .map(|ring| ring.into_iter().map(|i| i + first).collect())
+            .collect();
+        let edges = border_edges(&rings);
+        let mut points = work.mesh.points.clone();
+        points.extend_from_slice(&borders.corners);
+        let Ok(strip) = cove(&points, &work.chart.loops, &chains(&edges)) else { return false };
+        for &p in &borders.corners {
+            work.add_point(p, metric);
+        }
+        let mut triangles = strip.clone();
+        for (ring, cell) in rings.iter().zip(&inner) {
+            if let [a, b, c, d] = ring[..] {
+                triangles.extend(halves(&work.xyz, [a, b, c, d]));
+            } else {
+                let middle = work.add_point(cell.center(), metric);
+                triangles.extend(fan(middle, ring));
+            }
+        }
+        let points = std::mem::take(&mut work.mesh.points);
+        work.mesh = Triangulation::new(points, triangles);
+        let fixed: FxHashSet<(u32, u32)> = edges.iter().map(|&(a, b)| (a.min(b), a.max(b))).collect();
+        work.mesh.flip_all(&work.metrics, &|_, a, b, _| !fixed.contains(&(a.min(b), a.max(b))));
+        work.mesh.changed.clear();
+        work.trace.add("cells clear of the loops", inner.len());
+        work.trace.add("coving triangles", strip.len());
+        true
     }
 
     /// Cells that keep clear of the loops.
@@ -98,6 +163,13 @@ impl Coving {
             });
         }
     }
+}
+
+/// The coarsest grid that leaves next to as little too wide as any: twice the cells for a tenth less would be a bad bargain.
+fn best_grid(tried: &[(usize, [usize; 2])]) -> [usize; 2] {
+    let least = tried.iter().map(|t| t.0).min().unwrap_or(0);
+    let enough = least + tried.first().map_or(0, |t| t.0.saturating_sub(least) / 5);
+    tried.iter().find(|t| t.0 <= enough).map_or([1, 1], |t| t.1)
 }
 
 /// A cell at every corner through which the border of all cells runs twice.
@@ -145,51 +217,48 @@ fn chains(edges: &[(u32, u32)]) -> Vec<Vec<u32>> {
 
 impl Method for Coving {
     fn build(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<(), String> {
-        self.cells.refine(&UniformGrid, &self.region, self.tolerance, self.measure, check)?;
-        let metric = mean_metric(work.context.surface, self.region.uv_box);
-        work.metrics.fill(metric);
-        let inner = self.inner();
-        let borders = Borders::new(&inner);
-        let first = work.chart.points.len() as u32;
-        let rings: Vec<Vec<u32>> = rings(&borders, &inner)
-            .into_iter()
-            .map(|ring| ring.into_iter().map(|i| i + first).collect())
-            .collect();
-        let edges = border_edges(&rings);
-        let mut points = work.mesh.points.clone();
-        points.extend_from_slice(&borders.corners);
-        let Ok(strip) = cove(&points, &work.chart.loops, &chains(&edges)) else {
-            // Loops that cross themselves: their triangles are there already.
-            work.trace.add("faces that could not be coved", 1);
-            return Ok(());
-        };
-        for &p in &borders.corners {
-            work.add_point(p, metric);
-        }
-        let mut triangles = strip.clone();
-        for (ring, cell) in rings.iter().zip(&inner) {
-            if let [a, b, c, d] = ring[..] {
-                triangles.extend(halves(&work.xyz, [a, b, c, d]));
-            } else {
-                let middle = work.add_point(cell.center(), metric);
-                triangles.extend(fan(middle, ring));
+        self.cells.refine(&self.grid, &self.region, self.tolerance, self.measure, check)?;
+        let boundary = work.mesh.clone();
+        let trace = work.trace.clone();
+        // The grids tried, each with what it leaves too wide.
+        let mut tried: Vec<(usize, [usize; 2])> = Vec::new();
+        loop {
+            if !self.lay(work) {
+                // Loops that cross themselves: their triangles are there already.
+                work.trace.add("faces that could not be coved", 1);
+                return Ok(());
             }
+            check(work.mesh.triangles.len())?;
+            let (count, axis) = if self.halvings > 0 { (0, 0) } else { self.too_wide(work) };
+            tried.push((count, self.grid.finer));
+            let has_room = tried.len() <= DOUBLINGS && 2 * self.cells.leaves.len() <= MOST_CELLS;
+            if count == 0 || !has_room {
+                break;
+            }
+            let mut finer = self.grid.finer;
+            finer[1 - axis] *= 2;
+            restore(work, &boundary);
+            work.trace = trace.clone();
+            self.regrid(work, finer)?;
         }
-        let points = std::mem::take(&mut work.mesh.points);
-        work.mesh = Triangulation::new(points, triangles);
-        let fixed: FxHashSet<(u32, u32)> = edges.iter().map(|&(a, b)| (a.min(b), a.max(b))).collect();
-        work.mesh.flip_all(&work.metrics, &|_, a, b, _| !fixed.contains(&(a.min(b), a.max(b))));
-        work.mesh.changed.clear();
+        let best = best_grid(&tried);
+        if best != self.grid.finer {
+            restore(work, &boundary);
+            work.trace = trace;
+            self.regrid(work, best)?;
+            self.lay(work);
+        }
+        if best != [1, 1] {
+            work.trace.add("grids made finer for want of room", 1);
+        }
         let opened = open_out(work);
-        work.trace.add("cells clear of the loops", inner.len());
-        work.trace.add("coving triangles", strip.len());
         work.trace.add("flips at poles", opened);
         Ok(())
     }
 
     fn refine(&mut self, coarse: &[DVec2]) -> bool {
         self.halvings += 1;
-        self.halvings <= HALVINGS && self.cells.cut_at(coarse, &UniformGrid, &self.region, self.measure)
+        self.halvings <= HALVINGS && self.cells.cut_at(coarse, &self.grid, &self.region, self.measure)
     }
 
     fn drawing(&self) -> Vec<UvBox> {
@@ -234,6 +303,14 @@ mod tests {
             let outer = t.iter().filter(|&&v| v < 100).count();
             assert!(outer > 0, "{t:?} lies in the region");
         }
+    }
+
+    #[test]
+    fn a_finer_grid_must_be_worth_it() {
+        assert_eq!(best_grid(&[(0, [1, 1])]), [1, 1]);
+        assert_eq!(best_grid(&[(10, [1, 1]), (10, [1, 2]), (0, [1, 4])]), [1, 4]);
+        assert_eq!(best_grid(&[(10, [1, 1]), (1, [1, 2]), (0, [1, 4])]), [1, 2]);
+        assert_eq!(best_grid(&[(10, [1, 1]), (12, [1, 2]), (15, [1, 4])]), [1, 1]);
     }
 
     #[test]

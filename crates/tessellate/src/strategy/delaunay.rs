@@ -3,8 +3,9 @@
 //! Source: the survey of the Blender wiki, "Delaunay Triangulation". Points are strewn over the face, those outside its loops are
 //! discarded, and the rest is triangulated with the loops as constraints; nothing but the largest smallest angle decides
 //! about the triangles. Uniform points form a grid in the plane of parameters (as many lines as the uniform grid
-//! would have). Adaptive ones go where a triangle of those before deviates too much, its longest side half way inside, as
-//! Sheng and Hirsch 1992 restrict triangles by deviation. Neither bounds an error: the common proof does.
+//! would have); where that leaves triangles that are too large, for lack of lines or of room, more points
+//! restrict them by size ([`super::size`]). Adaptive ones go where a triangle of those before deviates too much, its longest side half way inside, as
+//! Sheng and Hirsch 1992 restrict triangles by deviation. The common proof has the last word.
 //!
 //! Angles are measured in the plane of parameters, stretched in each direction as the surface is on average.
 
@@ -14,6 +15,7 @@ use super::plain::mean_metric;
 use super::poles::open_out;
 use super::region::Region;
 use super::run::{Check, Method};
+use super::size::oversized;
 use crate::face::FaceWork;
 use crate::metric::Metric;
 use crate::surface::FaceSurface;
@@ -36,6 +38,10 @@ pub(crate) struct Delaunay {
     tolerance: f64,
     /// Lines of the uniform grid.
     lines: [usize; 2],
+    /// What triangles are restricted to by size.
+    allowed: f64,
+    /// How often the proof asked for more.
+    refined: usize,
     /// Points of the adaptive fill so far.
     points: Vec<DVec2>,
     metric: Metric,
@@ -47,8 +53,14 @@ const BESIDE: f64 = 0.3;
 /// Lines of the first grid where nothing is known about the surface.
 const FIRST_LINES: usize = 8;
 
-/// No grid has more lines in one direction.
-const MOST_LINES: usize = 2000;
+/// Triangles that the proof found too coarse are restricted to this share of what they were before.
+const TIGHTER: f64 = 0.6;
+
+/// So often the proof may ask for more; what limits of angle want is not found by sizes.
+const MOST_REFINED: usize = 3;
+
+/// Points by size, for each cell of the grid and each vertex of the loops: no face needs as many, so something else is wrong.
+const MOST_BY_SIZE: usize = 16;
 
 impl Delaunay {
     pub fn new(work: &FaceWork<'_, '_>, fill: Fill) -> Self {
@@ -57,7 +69,7 @@ impl Delaunay {
         let tolerance = work.limits.tolerance;
         let lines = first_lines(surface, region.uv_box, tolerance);
         let metric = mean_metric(surface, region.uv_box);
-        Self { region, fill, tolerance, lines, points: Vec::new(), metric }
+        Self { region, fill, tolerance, lines, allowed: tolerance, refined: 0, points: Vec::new(), metric }
     }
 
     fn insert(&self, work: &mut FaceWork<'_, '_>, p: DVec2, hint: &mut u32) -> bool {
@@ -87,6 +99,32 @@ impl Delaunay {
                 if count % 256 == 0 {
                     check(count)?;
                 }
+            }
+        }
+        Ok(count)
+    }
+
+    /// Puts points into triangles that span more than their tolerance allows, until none does.
+    fn restrict_by_size(&self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<usize, String> {
+        work.mesh.changed.clear();
+        let mut queue: Vec<u32> = (0..work.mesh.triangles.len() as u32).collect();
+        let (mut count, mut steps) = (0, 0usize);
+        let most = MOST_BY_SIZE * (self.lines[0] * self.lines[1] + work.chart.points.len());
+        while let Some(t) = queue.pop() {
+            if count == most {
+                break;
+            }
+            steps += 1;
+            if steps.is_multiple_of(256) {
+                check(count)?;
+            }
+            let Some(found) = oversized(work, &self.region, t, self.allowed) else { continue };
+            let mut hint = t;
+            if self.insert(work, found.middle, &mut hint) {
+                count += 1;
+                queue.append(&mut work.mesh.changed);
+                let n = work.mesh.triangles.len() as u32;
+                queue.extend(n.saturating_sub(2)..n);
             }
         }
         Ok(count)
@@ -151,7 +189,12 @@ impl Method for Delaunay {
         work.metrics.fill(self.metric);
         work.mesh.flip_all(&work.metrics, &|_, _, _, _| true);
         let count = match self.fill {
-            Fill::Uniform => self.fill_uniformly(work, check)?,
+            Fill::Uniform => {
+                let count = self.fill_uniformly(work, check)?;
+                let more = self.restrict_by_size(work, check)?;
+                work.trace.add("fill points by size", more);
+                count
+            }
             Fill::Adaptive => self.fill_adaptively(work, check)?,
         };
         work.mesh.changed.clear();
@@ -169,9 +212,9 @@ impl Method for Delaunay {
     fn refine(&mut self, coarse: &[DVec2]) -> bool {
         match self.fill {
             Fill::Uniform => {
-                let before = self.lines;
-                self.lines = self.lines.map(|n| (n + n.div_ceil(2)).min(MOST_LINES));
-                self.lines != before
+                self.refined += 1;
+                self.allowed *= TIGHTER;
+                self.refined <= MOST_REFINED
             }
             Fill::Adaptive => {
                 self.points.extend_from_slice(coarse);

@@ -16,7 +16,15 @@ use chordal_nurbs::NurbsSurface;
 
 /// A grid of equal cells.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct UniformGrid;
+pub(crate) struct UniformGrid {
+    /// So many times as many lines in each direction as the bound asks for.
+    pub finer: [usize; 2],
+}
+
+impl UniformGrid {
+    /// The coarsest grid within the bound.
+    pub const COARSEST: Self = Self { finer: [1; 2] };
+}
 
 /// A fixed number of cells per control cell; zero: as many as the bound asks for.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +47,7 @@ impl Rule for UniformGrid {
     fn first_cuts(&self, root: &NurbsSurface, tolerance: f64) -> Vec<Split> {
         let size = root.domain().size();
         let (n, m) = fewest(&SecondNorms::of_surface(root).over(size), tolerance);
+        let (n, m) = (n * self.finer[0], m * self.finer[1]);
         let at = |axis: usize, k: usize, n: usize| Split {
             axis,
             at: root.domain().min[axis] + size[axis] * k as f64 / n as f64,
@@ -174,7 +183,7 @@ mod tests {
         let points = rows.iter().flat_map(|&(u, z)| [0.0, 1.0].map(|v| DVec3::new(u, v, z))).collect();
         let knots = vec![0., 0., 0., 1., 1., 1.];
         let s = NurbsSurface::new([2, 1], knots, vec![0., 0., 1., 1.], points, None).expect("valid");
-        let cuts = UniformGrid.first_cuts(&s, 0.011);
+        let cuts = UniformGrid::COARSEST.first_cuts(&s, 0.011);
         assert_eq!(cuts.len(), 4);
         assert!(cuts.iter().all(|c| c.axis == 0));
         // Two control cells along u of width ½: the worst has error ⅛·2·¼ = 1/16, so ⌈√5.7⌉ = 3 parts; v gets as many.

@@ -11,6 +11,7 @@
 //! ```
 
 use crate::face::FaceWork;
+use crate::prove::{Prover, Verdict};
 use crate::triangulate::{NONE, orient};
 
 /// Flips edges at poles until every triangle there spans the pole's line the right way, as far as possible; borders of cells
@@ -38,6 +39,26 @@ pub(crate) fn open_out(work: &mut FaceWork<'_, '_>) -> usize {
     }
     work.mesh.changed.clear();
     flips
+}
+
+/// The proof puts points into a face, and flips around them: triangles at poles may be flat again so often.
+const OPENINGS: usize = 3;
+
+/// The proof of a face whose triangles at poles all span something.
+///
+/// # Errors
+/// A sentence, where the face is given up.
+pub(crate) fn refine_opened(work: &mut FaceWork<'_, '_>, prover: &mut Prover<'_>) -> Result<Verdict, String> {
+    open_out(work);
+    for _ in 0..OPENINGS {
+        let verdict = prover.refine(work)?;
+        // Of a face that is taken as it is, more refining would prove nothing.
+        let is_final = matches!(verdict, Verdict::Proven { error, .. } if !error.is_infinite());
+        if !is_final || open_out(work) == 0 {
+            return Ok(verdict);
+        }
+    }
+    prover.refine(work)
 }
 
 /// Where a triangle with one corner on a pole spans nothing, or the wrong way: the corner opposite the edge to flip.

@@ -10,7 +10,7 @@ use super::delaunay::Delaunay;
 use super::grid::{ControlCells, UniformGrid};
 use super::kd::{Binary, Kd};
 use super::node::Measure;
-use super::poles::open_out;
+use super::poles::{open_out, refine_opened};
 use super::polygons::{Filling, retriangulate};
 use super::quadtree::{Quadtree, SURFACE_SHARE};
 use super::recursive::Recursive;
@@ -141,7 +141,7 @@ fn method(work: &FaceWork<'_, '_>, options: &Options) -> Result<Box<dyn Method>,
     let (rule, filling): (Box<dyn Rule>, Filling) = match strategy {
         Strategy::Kd(cut) => (Box::new(Kd(cut)), Filling::FanOrMonotone),
         Strategy::Binary(cut) => (Box::new(Binary(cut)), Filling::FanOrMonotone),
-        Strategy::UniformGrid => (Box::new(UniformGrid), Filling::FanOrMonotone),
+        Strategy::UniformGrid => (Box::new(UniformGrid::COARSEST), Filling::FanOrMonotone),
         Strategy::ControlCells { per_cell } => (Box::new(ControlCells { per_cell }), Filling::FanOrMonotone),
         Strategy::Recursive => (Box::new(Recursive), Filling::FanOrMonotone),
         Strategy::Quadtree(stretch) => (Box::new(Quadtree { stretch, share }), Filling::Delaunay),
@@ -222,7 +222,7 @@ fn refine(
         at_boundary = if judged.is_inside { usize::MAX } else { judged.coarse.len() };
     }
     let before = work.mesh.triangles.len();
-    let verdict = prover.refine(work)?;
+    let verdict = refine_opened(work, prover)?;
     work.trace
         .add("triangles added by the default's means", work.mesh.triangles.len().saturating_sub(before));
     let kept = match verdict {
@@ -239,11 +239,11 @@ fn refine(
     work.quads.clear();
     work.trace.add("faces left to the default strategy", 1);
     work.fill_by_rows();
-    prover.refine(work)
+    refine_opened(work, prover)
 }
 
 /// Takes everything out of the face but its loops.
-fn restore(work: &mut FaceWork<'_, '_>, boundary: &Triangulation) {
+pub(super) fn restore(work: &mut FaceWork<'_, '_>, boundary: &Triangulation) {
     let n = boundary.points.len();
     work.mesh = boundary.clone();
     work.metrics.truncate(n);

@@ -1,0 +1,92 @@
+//! Chords along which a face does not turn further than the limit of angle.
+
+use super::{EdgeUse, split_where};
+use crate::metric::Limits;
+use crate::prove::{TURN_LENGTH, turns_too_far};
+use chordal_nurbs::{Curve, Range};
+
+/// A chord is halved at most this often for the turn of a face along it.
+const MAX_HALVINGS: usize = 24;
+
+/// Halves chords between whose ends a face turns further than allowed: it may bend where no probe was.
+pub(super) fn turning_less(
+    mut t: Vec<f64>,
+    curve: &Curve,
+    range: Range,
+    uses: &[EdgeUse<'_, '_>],
+    limits: &Limits,
+) -> Vec<f64> {
+    // The ends may lie on creases: this much inside, normals belong to this piece.
+    let inside = Range::new(range.start + 1e-7 * range.length(), range.end - 1e-7 * range.length());
+    for one in uses.iter().filter(|u| !u.surface.is_elementary()) {
+        if limits.angle >= std::f64::consts::PI {
+            break;
+        }
+        let mut near = None;
+        let mut at = |t: f64| {
+            let t = inside.clamp(t);
+            let p = curve.point(t);
+            let place = one.parameters(p, t, range, near);
+            near = Some(place);
+            (t, p, one.surface.normal(place.uv))
+        };
+        let mut fine = vec![t[0]];
+        let mut last = at(t[0]);
+        for &end in &t[1..] {
+            let mut ends = vec![end];
+            while let Some(&next) = ends.last() {
+                let ahead = at(next);
+                let long = last.1.distance(ahead.1) > TURN_LENGTH * limits.tolerance;
+                if long && ends.len() < MAX_HALVINGS && turns_too_far(last.2, ahead.2, limits.angle) {
+                    ends.push(0.5 * (last.0 + ahead.0));
+                    continue;
+                }
+                fine.push(next);
+                last = ahead;
+                ends.pop();
+            }
+        }
+        t = fine;
+    }
+    t
+}
+
+/// Where a chord that knew nothing of its faces is asked how far they turn along it.
+const TURN_PROBES: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// Halves chords over which a face turns further than allowed, though it may turn back before their end: no facet beside such a
+/// chord could reach past the place in between.
+pub(super) fn turning_less_between(
+    mut t: Vec<f64>,
+    curve: &Curve,
+    range: Range,
+    uses: &[EdgeUse<'_, '_>],
+    limits: &Limits,
+) -> Vec<f64> {
+    if limits.angle >= std::f64::consts::PI {
+        return t;
+    }
+    let inside = Range::new(range.start + 1e-7 * range.length(), range.end - 1e-7 * range.length());
+    for one in uses.iter().filter(|u| !u.surface.is_elementary()) {
+        let normal = |t: f64| {
+            let t = inside.clamp(t);
+            one.surface.normal(one.parameters(curve.point(t), t, range, None).uv)
+        };
+        for _ in 0..MAX_HALVINGS {
+            let before = t.len();
+            t = split_where(&t, |a, b| {
+                let ends = [a, b].map(normal);
+                let long = curve.point(a).distance(curve.point(b)) > TURN_LENGTH * limits.tolerance;
+                let turns = |share: f64| {
+                    let n = normal(a + share * (b - a));
+                    ends.iter().any(|&end| turns_too_far(end, n, limits.angle))
+                };
+                long && TURN_PROBES.into_iter().any(turns)
+            });
+            if t.len() == before {
+                break;
+            }
+        }
+    }
+    t
+}
