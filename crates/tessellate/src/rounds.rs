@@ -1,6 +1,7 @@
 //! The stages of one part, top to bottom, and the rounds in which faces ask for finer edges.
 
 use crate::chart::FaceContext;
+use crate::edge_method::EdgeMethod;
 use crate::edges::{EdgeSamples, EdgeUse};
 use crate::face::{FaceResult, Outcome, mesh_face};
 use crate::looseness::pcurve_gap;
@@ -72,7 +73,7 @@ struct Job<'a> {
     resolution: f64,
     surfaces: Vec<Option<FaceSurface<'a>>>,
     info: Vec<EdgeInfo<'a>>,
-    /// Faces that another strategy could not prove, with the options of the default one.
+    /// Faces that other methods could not prove, with the options of the default ones.
     left: Option<(Options, Vec<bool>)>,
 }
 
@@ -184,8 +185,12 @@ impl Job<'_> {
                 Some(EdgeUse { surface, pcurve, reach: reach[f] }.paced(edge, self.limits.tolerance))
             })
             .collect();
+        let method = match &self.left {
+            Some((default, faces)) if info.uses.iter().any(|&(f, _)| faces[f]) => default.edge_method,
+            _ => self.options.edge_method,
+        };
         let sampled = catch_unwind(AssertUnwindSafe(|| {
-            EdgeSamples::new(self.part, edge, &uses, &self.limits, self.options.edge_method, least)
+            EdgeSamples::new(self.part, edge, &uses, &self.limits, method, least)
         }));
         sampled.unwrap_or_default()
     }
@@ -329,21 +334,23 @@ impl Job<'_> {
         faces.map(|(face, outcome)| unusable(face).is_none() && is_undone(outcome)).collect()
     }
 
-    /// Meshes the part once more where another strategy left faces undone, those by the default strategy from the first
-    /// round on: where a file is loose, loops cross the sooner the finer they are, and a strategy may have asked for
-    /// chords that the default can do without.
+    /// Meshes the part once more where other methods left faces undone, those and their edges by the default methods from the
+    /// first round on: where a file is loose, loops cross the sooner the finer they are, and a strategy may have asked
+    /// for chords that the default can do without.
     fn leave_to_default(
         &mut self,
         edges: &mut Vec<EdgeSamples>,
         outcomes: &mut Vec<Result<Box<FaceResult>, String>>,
         report: &mut PartReport,
     ) {
+        let default =
+            Options { strategy: Strategy::Default, edge_method: EdgeMethod::Default, ..self.options.clone() };
         let undone = self.undone(outcomes);
         let count = |faces: &[bool]| faces.iter().filter(|&&f| f).count();
-        if self.options.strategy == Strategy::Default || count(&undone) == 0 || self.cancel.is_cancelled() {
+        if default == *self.options || count(&undone) == 0 || self.cancel.is_cancelled() {
             return;
         }
-        self.left = Some((Options { strategy: Strategy::Default, ..self.options.clone() }, undone.clone()));
+        self.left = Some((default, undone.clone()));
         let before = report.rounds;
         let mut again = self.sample_edges();
         let mut found = self.rounds(&mut again, report, &|_| ());
@@ -353,7 +360,7 @@ impl Job<'_> {
         }
         let left = found.iter_mut().zip(&undone).filter(|(_, left)| **left);
         for result in left.filter_map(|(outcome, _)| outcome.as_mut().ok()) {
-            result.trace.add("faces left to the default strategy", 1);
+            result.trace.add("faces left to the default methods", 1);
         }
         (*edges, *outcomes) = (again, found);
     }
