@@ -49,7 +49,9 @@ fn estimated_meshes_are_closed_too_and_not_larger() {
             let estimated = mesh(name, entry.strategy, Bound::Estimated).expect("a mesh");
             assert!(estimated.watertight, "{name}, {}: {:?}", entry.name, estimated.undone);
             let proven = mesh(name, entry.strategy, Bound::Proven).expect("a mesh");
-            assert!(estimated.triangles <= proven.triangles, "{name}, {}", entry.name);
+            // A face of which nothing could be proven is the default's.
+            let left = proven.stages.iter().any(|s| s.name.starts_with("faces left to the default"));
+            assert!(left || estimated.triangles <= proven.triangles, "{name}, {}", entry.name);
         }
     }
 }
