@@ -1,17 +1,31 @@
 #!/usr/bin/env bash
-# Draws models in both modes and at three zooms into a folder, to be looked at:
-#     tools/pictures.sh FOLDER MODEL…
-# CHORDAL names the program (default: the release build with the feature `render`).
+# Draws models into a folder, to be looked at: by their mesh, and exactly with both ways of trimming, at three zooms.
+#     tools/pictures.sh FOLDER [MODEL…]
+# Without models it takes fourteen of the corpus: the three by which trimming is shown, trims that break tessellators, and solids whose
+# neighbours are to be looked at close up. CHORDAL names the program (default: the release build with the feature `render`); SIZE the
+# size of a picture.
 set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
 folder=$1
 shift
-chordal=${CHORDAL:-$(dirname "$0")/../target/release/chordal}
+chordal=${CHORDAL:-$root/target/release/chordal}
+size=${SIZE:-480x360}
+if [ $# = 0 ]; then
+    for name in iv/duck.iv iv/airplane_in_a_box.iv iv/concave_trim.iv nested_loops.step touching_loops.step sliver_loops.step \
+        holes_wrong_way.step sphere_holes.step torus_villarceau.step bracket.step fillets.step fillet_torus.step blade.step gear.step; do
+        set -- "$@" "$root/corpus/$name"
+    done
+fi
 mkdir -p "$folder"
 for model in "$@"; do
     name=$(basename "$model")
-    for mode in mesh nurbs; do
-        for zoom in 1 4 16; do
-            "$chordal" render "$model" -o "$folder/$name-$mode-$zoom.png" --mode "$mode" --zoom "$zoom" --size 640x480 ||
+    for zoom in 1 4 16; do
+        for way in mesh exact texture; do
+            case $way in
+            mesh) mode=(--mode mesh) ;;
+            *) mode=(--mode nurbs --trim "$way") ;;
+            esac
+            "$chordal" render "$model" -o "$folder/${name%.*}-$zoom-$way.png" "${mode[@]}" --zoom "$zoom" --size "$size" --quiet ||
                 [ $? = 1 ] # 1: something of the model was left undone, and said
         done
     done

@@ -1,6 +1,6 @@
 //! How finely one face is sampled for a view, and when a choice made before still serves.
 
-use crate::exact::{Cubic, ExactFace, steps};
+use crate::exact::{Cubic, ExactFace, errors_served, steps};
 use chordal_nurbs::DVec2;
 
 /// The largest distance between what is drawn and the exact surface, pixels.
@@ -51,6 +51,31 @@ impl Choice {
     }
 }
 
+impl Choice {
+    /// The smallest and the largest error that samples chosen so serve, in the part's units; nothing between the two is in doubt.
+    pub fn errors_served(&self, face: &ExactFace, textured: bool) -> [f64; 2] {
+        let [mut low, mut high] = errors_served(face, self.steps);
+        let mut narrow = |least: f64, most: f64| (low, high) = (low.max(least), high.min(most));
+        if self.border < BORDER_STEPS {
+            let least = face.border_bend / (2.0 * self.border * self.border);
+            narrow(least, if self.border <= 2.0 { f64::INFINITY } else { 4.0 * least });
+        } else {
+            narrow(f64::INFINITY, 0.0);
+        }
+        for axis in (0..2).filter(|_| textured) {
+            let (has, least) =
+                (self.texels[axis], face.stretch[axis] / self.texels[axis] * (0.5 / PIXEL_ERROR));
+            match has {
+                _ if has >= TEXELS[1] => narrow(f64::INFINITY, 0.0),
+                _ if has <= TOO_FINE * TEXELS[0] => narrow(least, f64::INFINITY),
+                _ => narrow(least, TOO_FINE * least),
+            }
+        }
+        // Within rounding of the ends it may be either.
+        [low * (1.0 + 1e-9), high * (1.0 - 1e-9)]
+    }
+}
+
 /// Half the error for the surface's bend and the curve's own.
 fn border_steps(bend: f64, error: f64) -> f64 {
     (bend / (2.0 * error)).sqrt().clamp(1.0, BORDER_STEPS)
@@ -93,6 +118,7 @@ impl ExactFace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::{DVec3, NurbsSurface};
 
     #[test]
     fn choices_serve_while_they_are_fine_enough_and_not_too_fine() {
@@ -106,5 +132,40 @@ mod tests {
         assert!(has.serves(&choice(10.0, 100.0), true) && has.serves(&choice(5.0, 60.0), true));
         assert!(!has.serves(&choice(11.0, 100.0), false) && !has.serves(&choice(4.0, 100.0), false));
         assert!(has.serves(&choice(10.0, 300.0), false) && !has.serves(&choice(10.0, 300.0), true));
+    }
+
+    /// Between the errors that a choice says it serves, it does, and at what it was made for.
+    #[test]
+    fn errors_served_are_served() {
+        let net = |i: usize, j: usize| DVec3::new(i as f64, j as f64, ((i * j) as f64).sin());
+        let points = (0..16).map(|k| net(k / 4, k % 4)).collect();
+        let knots = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+        let surface = NurbsSurface::new([3, 3], knots.clone(), knots, points, None).unwrap();
+        let face = ExactFace::whole(surface);
+        let mut open = 0;
+        for step in 0..60 {
+            let error = 0.3 * 0.83_f64.powi(step);
+            for made in [Choice::of(&face, error), Choice::of(&face, error).with_reserve(&face)] {
+                for textured in [false, true] {
+                    let [low, high] = made.errors_served(&face, textured);
+                    if !(low < high) {
+                        continue;
+                    }
+                    open += 1;
+                    assert!(
+                        low <= error * (1.0 + 1e-6) && error <= high * (1.0 + 1e-6),
+                        "{low} {error} {high}"
+                    );
+                    for k in 0..=20 {
+                        let at = low * (high.min(1e3) / low).powf(f64::from(k) / 20.0);
+                        assert!(
+                            made.serves(&Choice::of(&face, at), textured),
+                            "{made:?} at {at}, {textured}"
+                        );
+                    }
+                }
+            }
+        }
+        assert!(open > 100, "{open}");
     }
 }

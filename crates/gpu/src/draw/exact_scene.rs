@@ -6,18 +6,19 @@
 //! 4. Generations that hold little of use are evaluated anew with them, so that there are never many.
 
 use super::blocks::Blocks;
+use super::calm::Calm;
 use super::choice::Choice;
 use super::exact::ExactRenderer;
 use super::generation::{Generation, Member, most_points};
-use super::mesh_groups::{Lines, Triangles};
-use super::mesh_shapes::{local, scene_outline, scenery_of, shape_boxes};
+use super::mesh_groups::Triangles;
+use super::mesh_shapes::{scene_outline, scenery_of, shape_boxes};
 use super::renderer::{Renderer, Stage, draw, placement_data};
 use super::residents::{Home, Resident, settle};
 use super::target::Target;
 use super::view_data::view_data;
+use super::view_lines::ViewLines;
 use super::visible::{Frustum, Shown, Visible};
 use super::{Background, Camera, Picture, RenderOptions, Scenery, Style, Trim};
-use crate::exact::edge_lines;
 use crate::{ExactModel, Gpu, GpuError};
 use chordal_brep::Model;
 use chordal_mesh::Scene;
@@ -28,9 +29,6 @@ use std::ops::Range;
 
 /// Small generations that are kept before the smaller half of them is evaluated anew.
 const MOST_GENERATIONS: usize = 12;
-/// Lines are made for an error smaller by this, and kept while it is at most so much smaller twice over.
-const LINE_RESERVE: f64 = 2.0;
-
 /// What one frame took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -56,14 +54,14 @@ pub struct ExactScene<'a> {
     style: Style,
     scenery: Scenery,
     boxes: Vec<[DVec3; 2]>,
+    /// Parts of which some face may show its back alone.
+    closed: Vec<bool>,
     outline: Vec<DVec3>,
     residents: Vec<Resident>,
     homes: Vec<Vec<Home>>,
     stage: Stage,
     triangles: Vec<Triangles>,
-    lines: Vec<Lines>,
-    /// Per shape the error that its lines are made for.
-    line_errors: Vec<f64>,
+    lines: ViewLines,
     trim: Trim,
     generations: BTreeMap<u64, Generation>,
     next_generation: u64,
@@ -71,6 +69,7 @@ pub struct ExactScene<'a> {
     sampled: BTreeMap<(usize, i32), Vec<Option<Sampled>>>,
     /// What is drawn of every generation.
     lists: BTreeMap<u64, List>,
+    calm: Option<Calm>,
     target: Option<Target>,
 }
 
@@ -121,13 +120,14 @@ impl<'a> ExactScene<'a> {
                 outline: scene_outline(scene),
                 stage: Stage::new(gpu, scenery.placed.len())?,
                 triangles: Triangles::upload(gpu, &scenery.shapes)?,
-                lines: Vec::new(),
-                line_errors: vec![0.0; scenery.shapes.len()],
+                lines: ViewLines::new(scenery.shapes.len()),
+                closed: exact.parts.iter().map(|p| p.faces.iter().any(|f| f.outward.is_some())).collect(),
                 trim: Trim::default(),
                 generations: BTreeMap::new(),
                 next_generation: 0,
                 sampled: BTreeMap::new(),
                 lists: BTreeMap::new(),
+                calm: None,
                 target: None,
                 scene,
                 model,
@@ -171,10 +171,12 @@ impl<'a> ExactScene<'a> {
         let resident = &mut self.residents[home.resident];
         resident.set.replace(home.surface, surface)?;
         let sent = resident.on_device.update(gpu, &resident.set, home.surface)?;
+        self.calm = None;
         let of_part = &mut self.exact.parts[part];
         of_part.faces[face].replace_surface(surface);
         // A shell that moves may open.
         of_part.faces.iter_mut().for_each(|f| f.outward = None);
+        self.closed[part] = false;
         if let Some([low, high]) = of_part.faces[face].bounds {
             let [l, h] = self.boxes[part];
             self.boxes[part] = [l.min(low), h.max(high)];
@@ -197,12 +199,22 @@ impl<'a> ExactScene<'a> {
         let camera = options.camera(&self.outline);
         gpu.watched("drawing", || {
             let (visible, frustum) = self.see(gpu, &camera, options);
-            let (mut counts, keys) = self.evaluate(gpu, exact, &visible, &frustum, options)?;
+            let backs = options.reject && options.section.is_none();
+            let calm = self.calm.as_ref().filter(|_| self.trim == options.trim);
+            let mut counts = match calm.and_then(|c| c.counts(&visible, backs, &self.closed)) {
+                Some(counts) => counts,
+                None => {
+                    let (counts, keys) = self.evaluate(gpu, exact, &visible, &frustum, options)?;
+                    self.list_blocks(gpu, exact, &keys)?;
+                    self.calm = self.calm(&visible, &counts);
+                    counts
+                }
+            };
             counts.placements_outside = self.scenery.placed.len() - visible.order.len();
             if options.lines {
-                self.refine_lines(gpu, renderer, &visible)?;
+                let parts = (self.scene, self.model);
+                self.lines.refine(gpu, renderer, parts, &mut self.scenery, &visible, self.stage.buffers())?;
             }
-            self.list_blocks(gpu, exact, &keys)?;
             let target = self.target.as_ref().expect("made above");
             draw(gpu, target, options.background, |pass| {
                 renderer.draw_triangles(gpu, pass, &self.stage, &self.triangles, &visible.placed);
@@ -215,10 +227,20 @@ impl<'a> ExactScene<'a> {
                     self.generations[id].draw_borders(pass, exact, &list.blocks);
                 }
                 if options.lines {
-                    renderer.draw_lines(pass, &self.lines, &visible.placed);
+                    renderer.draw_lines(pass, self.lines.get(), &visible.placed);
                 }
             });
             Ok(counts)
+        })
+    }
+
+    /// What the next frame may rely on, if this one shows everything.
+    fn calm(&self, visible: &Visible, counts: &FrameCounts) -> Option<Calm> {
+        let textured = self.trim == Trim::Texture;
+        Calm::of(visible, counts, |level| {
+            let slots = self.sampled[&(level.shape, level.class)].iter();
+            let errors = slots.zip(&self.exact.parts[level.shape].faces);
+            errors.map(|(slot, face)| Some(slot.as_ref()?.choice.errors_served(face, textured))).collect()
         })
     }
 
@@ -442,32 +464,6 @@ impl<'a> ExactScene<'a> {
                 let blocks = self.generations[&id].blocks(gpu, renderer, self.trim, &drawn)?;
                 self.lists.insert(id, List { drawn, blocks });
             }
-        }
-        Ok(())
-    }
-
-    /// Makes lines as fine as the view needs, of the shapes whose lines do not serve.
-    fn refine_lines(&mut self, gpu: &Gpu, renderer: &Renderer, visible: &Visible) -> Result<(), GpuError> {
-        let mut needs: BTreeMap<usize, f64> = BTreeMap::new();
-        for level in &visible.levels {
-            let error = needs.entry(level.shape).or_insert(f64::INFINITY);
-            *error = error.min(0.5 * level.error);
-        }
-        let mut changed = false;
-        for (shape, error) in needs {
-            let has = self.line_errors[shape];
-            if has <= error && has * LINE_RESERVE * LINE_RESERVE >= error {
-                continue;
-            }
-            let made_for = error / LINE_RESERVE;
-            let lines = edge_lines(&self.model.parts[shape], &self.scene.parts[shape].mesh, made_for);
-            let middle = self.scenery.shapes[shape].middle;
-            self.scenery.shapes[shape].segments = lines.iter().map(|e| e.map(|p| local(p, middle))).collect();
-            self.line_errors[shape] = made_for;
-            changed = true;
-        }
-        if changed {
-            self.lines = Lines::upload(gpu, &renderer.lines, &self.scenery.shapes, self.stage.buffers())?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Drawing: scenes of meshes or of exact surfaces, without a window, into a picture.
 
 mod blocks;
+mod calm;
 mod camera;
 mod choice;
 mod exact;
@@ -17,6 +18,7 @@ mod shapes;
 mod target;
 mod trim_texture;
 mod view_data;
+mod view_lines;
 mod visible;
 
 pub use camera::{Camera, Projection, View};

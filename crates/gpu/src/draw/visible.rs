@@ -52,6 +52,13 @@ impl Frustum {
         })
     }
 
+    /// True only where every point of the box is in the picture.
+    fn holds(&self, to_view: &DAffine3, [low, high]: [DVec3; 2]) -> bool {
+        let corner = |k: usize| DVec3::from_array([0, 1, 2].map(|axis| [low, high][k >> axis & 1][axis]));
+        let in_view = |k: usize| to_view.transform_point3(corner(k));
+        (0..8).all(|k| self.planes.iter().all(|plane| plane.truncate().dot(in_view(k)) + plane.w >= 0.0))
+    }
+
     /// True where the face shows its back alone, and lies on a closed shell that is seen from outside.
     pub fn faces_away(&self, eye: &Eye, face: &ExactFace) -> bool {
         let (Some(cone), Some([low, high])) = (face.outward, face.bounds) else { return false };
@@ -104,6 +111,8 @@ pub(crate) struct Level {
     /// The smallest of its errors, in the part's units.
     pub error: f64,
     pub placed: Range<u32>,
+    /// Every placement is in the picture as a whole.
+    pub whole: bool,
     /// Placements to view, for rejecting faces; empty where they are too many to be asked one by one.
     views: Vec<(DAffine3, Eye)>,
 }
@@ -114,6 +123,9 @@ const ASKED: usize = 16;
 impl Level {
     /// Whether some placement may show the face: in the picture, and, where backs are left out, from its outside.
     pub fn shows(&self, frustum: &Frustum, face: &ExactFace, leave_out_backs: bool) -> Shown {
+        if self.whole && !(leave_out_backs && face.outward.is_some()) {
+            return Shown::Yes;
+        }
         let Some(bounds) = face.bounds.filter(|_| !self.views.is_empty()) else { return Shown::Yes };
         let mut found = Shown::Outside;
         for (to_view, eye) in &self.views {
@@ -165,7 +177,7 @@ impl Visible {
                 }
             }
             first += of_shape.len();
-            visible.push(scenery, camera, shape, seen);
+            visible.push(scenery, boxes, frustum, shape, seen);
         }
         visible
     }
@@ -173,11 +185,12 @@ impl Visible {
     fn push(
         &mut self,
         scenery: &Scenery,
-        camera: &Camera,
+        boxes: &[[DVec3; 2]],
+        frustum: &Frustum,
         shape: usize,
         mut seen: Vec<(f64, usize, DAffine3)>,
     ) {
-        let start = self.order.len() as u32;
+        let (camera, start) = (&frustum.camera, self.order.len() as u32);
         let (low, high) = seen.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), s| (l.min(s.0), h.max(s.0)));
         let classes = high > CLASS * low;
         let class_of = |error: f64| if classes { (error.ln() / CLASS.ln()).floor() as i32 } else { i32::MAX };
@@ -195,7 +208,8 @@ impl Visible {
                 .collect();
             let error = alike.iter().map(|s| s.0).fold(f64::INFINITY, f64::min);
             self.order.extend(alike.iter().map(|s| s.1));
-            self.levels.push(Level { shape, class: class_of(error), error, placed, views });
+            let whole = asked.iter().all(|(_, _, to_view)| frustum.holds(to_view, boxes[shape]));
+            self.levels.push(Level { shape, class: class_of(error), error, placed, whole, views });
         }
         self.placed[shape] = start..self.order.len() as u32;
     }

@@ -38,6 +38,16 @@ pub struct ExactFace {
     pub(crate) outward: Option<Cone>,
 }
 
+#[cfg(test)]
+impl ExactFace {
+    /// An untrimmed face over the whole of a surface.
+    pub(crate) fn whole(surface: NurbsSurface) -> Self {
+        let uv = surface.domain();
+        let over = Surface::Nurbs(surface);
+        untrimmed(&over, uv).expect("a spline is a spline")
+    }
+}
+
 impl ExactFace {
     /// Takes another surface of the same shape of knots over the same parameters: how fine it must be sampled follows; its
     /// back may be seen from now on.
@@ -113,6 +123,13 @@ fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters
     if !(uv.size().min_element() > 0.0) || !uv.is_finite() {
         return None;
     }
+    let face = ExactFace { loops: loops(surface, of_face, edges, uv), ..untrimmed(surface, uv)? };
+    let border_bend = face.border_bends().fold(0.0, f64::max);
+    Some(ExactFace { border_bend, ..face })
+}
+
+/// The face that fills the box.
+fn untrimmed(surface: &Surface, uv: UvBox) -> Option<ExactFace> {
     let nurbs = surface.to_nurbs(uv).ok()?;
     let parameters = surface.nurbs_parameters(uv).ok()?;
     let [kinks_u, kinks_v] = surface.breaks(uv);
@@ -123,7 +140,7 @@ fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters
         surface: nurbs,
         parameters,
         uv,
-        loops: loops(surface, of_face, edges, uv),
+        loops: Vec::new(),
         reversed: false,
         color: None,
         bends,

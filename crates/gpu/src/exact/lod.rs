@@ -8,20 +8,38 @@ use super::ExactFace;
 
 /// Points of one face at most; a view that asks for more sees the difference only where the face fills it many times.
 const MOST: f64 = 2048.0;
+const MOST_POINTS: f64 = 400_000.0;
+
+/// What the steps along u and v are proportional to, the error's root being the divisor.
+fn proportions(face: &ExactFace) -> [f64; 2] {
+    let [uu, uv, vv] = face.bends;
+    let ratio = if uu > 0.0 && vv > 0.0 { (uu / vv).sqrt() } else { 1.0 };
+    let size = face.uv.size();
+    [size.x * (0.25 * (uu + uv * ratio)).sqrt(), size.y * (0.25 * (vv + uv / ratio)).sqrt()]
+}
 
 /// Steps along u and v for an error in the part's units, before kinks are added.
 pub(crate) fn steps(face: &ExactFace, error: f64) -> [f64; 2] {
-    let [uu, uv, vv] = face.bends;
-    let ratio = if uu > 0.0 && vv > 0.0 { (uu / vv).sqrt() } else { 1.0 };
-    let needs = |bend: f64, length: f64| (length * (bend / (4.0 * error)).sqrt()).ceil().clamp(1.0, MOST);
-    let size = face.uv.size();
-    let mut steps = [needs(uu + uv * ratio, size.x), needs(vv + uv / ratio, size.y)];
-    // One head of samples is never cut between buffers.
-    while steps[0] * steps[1] > 400_000.0 {
+    let mut steps = proportions(face).map(|x| (x / error.sqrt()).ceil().clamp(1.0, MOST));
+    while steps[0] * steps[1] > MOST_POINTS {
         let larger = usize::from(steps[1] > steps[0]);
         steps[larger] = (0.5 * steps[larger]).ceil();
     }
     steps
+}
+
+/// The smallest and the largest error that so many steps serve, being at most twice what is needed.
+pub(crate) fn errors_served(face: &ExactFace, steps: [f64; 2]) -> [f64; 2] {
+    if 4.0 * steps[0] * steps[1] > MOST_POINTS || steps.iter().any(|s| *s >= MOST) {
+        // What the limits have cut is asked for each time.
+        return [f64::INFINITY, 0.0];
+    }
+    let of = |axis: usize| {
+        let least = (proportions(face)[axis] / steps[axis]).powi(2);
+        [least, if steps[axis] <= 2.0 { f64::INFINITY } else { 4.0 * least }]
+    };
+    let ([a, b], [c, d]) = (of(0), of(1));
+    [a.max(c), b.min(d)]
 }
 
 /// The face's parameters along u and v, native, in so many steps. Knot lines across which the surface has a kink are among

@@ -11,6 +11,6 @@ pub(crate) mod trim;
 pub(crate) use cone::{Cone, normal_cone};
 pub(crate) use edges::{EdgeParameters, edge_lines};
 pub use faces::{ExactFace, ExactModel, ExactPart, exact_model};
-pub(crate) use lod::{grid, steps};
+pub(crate) use lod::{errors_served, grid, steps};
 pub(crate) use outside::outside_faces;
 pub(crate) use pieces::Cubic;
