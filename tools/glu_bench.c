@@ -1,9 +1,10 @@
-/* Frames a second of Mesa's GLU NURBS on a scene of `gpu-bench --scene`, off screen (OSMesa), half a pixel of error.
+/* Frames a second of Mesa's GLU NURBS on a scene of `gpu-bench --scene`, off screen (OSMesa): half a pixel of error as GLU
+ * understands it, or so many steps along each side of every surface.
  *
  * GLU samples every surface anew for every frame, on the CPU, and trims by tessellating in the parameters. Normals are GLU's own
  * (GL_AUTO_NORMAL). Prints: surfaces, width, height, seconds of the fastest frame, frames a second, shaded pixels.
  *
- * usage: glu_bench SCENE WIDTH HEIGHT [OUT.ppm] */
+ * usage: glu_bench SCENE WIDTH HEIGHT STEPS [OUT.ppm]      STEPS 0: by the error */
 
 #include <GL/glu.h>
 #include <GL/osmesa.h>
@@ -125,7 +126,7 @@ static void set_up(const GLfloat *box, int width, int height)
 
 int main(int argc, char **argv)
 {
-    if (argc < 4) fail("usage: glu_bench SCENE WIDTH HEIGHT [OUT.ppm]");
+    if (argc < 5) fail("usage: glu_bench SCENE WIDTH HEIGHT STEPS [OUT.ppm]");
     FILE *file = fopen(argv[1], "r");
     if (!file) fail("cannot read the scene");
     int width = atoi(argv[2]), height = atoi(argv[3]), count = number(file);
@@ -144,8 +145,15 @@ int main(int argc, char **argv)
     set_up(box, width, height);
     GLUnurbs *nurbs = gluNewNurbsRenderer();
     gluNurbsCallback(nurbs, GLU_ERROR, (_GLUfuncptr)count_error);
-    gluNurbsProperty(nurbs, GLU_SAMPLING_METHOD, GLU_PARAMETRIC_ERROR);
-    gluNurbsProperty(nurbs, GLU_PARAMETRIC_TOLERANCE, 0.5f);
+    float steps = (float)atof(argv[4]);
+    if (steps > 0) {
+        gluNurbsProperty(nurbs, GLU_SAMPLING_METHOD, GLU_DOMAIN_DISTANCE);
+        gluNurbsProperty(nurbs, GLU_U_STEP, steps);
+        gluNurbsProperty(nurbs, GLU_V_STEP, steps);
+    } else {
+        gluNurbsProperty(nurbs, GLU_SAMPLING_METHOD, GLU_PARAMETRIC_ERROR);
+        gluNurbsProperty(nurbs, GLU_PARAMETRIC_TOLERANCE, 0.5f);
+    }
 
     double began = now(), best = 1e300;
     for (int frame = 0; frame < MOST_FRAMES && (frame == 0 || now() - began < PATIENCE); frame++) {
@@ -158,8 +166,8 @@ int main(int argc, char **argv)
     for (long k = 0; k < (long)width * height; k++) shaded += pixels[4 * k] + pixels[4 * k + 1] + pixels[4 * k + 2] > 0;
     printf("%d %d %d %.4f %.2f %ld\n", count, width, height, best, 1.0 / best, shaded);
     if (errors) fprintf(stderr, "glu_bench: GLU reported %d errors\n", errors);
-    if (argc > 4) {
-        FILE *out = fopen(argv[4], "wb");
+    if (argc > 5) {
+        FILE *out = fopen(argv[5], "wb");
         if (!out) fail("cannot write the picture");
         fprintf(out, "P6\n%d %d\n255\n", width, height);
         for (int y = height - 1; y >= 0; y--)
