@@ -81,28 +81,55 @@ impl<'a> HostSurface<'a> {
             .chunk_by(|a, b| a.0 == b.0)
             .map(|run| ((run[0].0 - along_u.span) as usize, run.len()))
             .collect();
-        let ts: Vec<f64> = places.iter().map(|place| place.1).collect();
+        let mut room = vec![0.0; 4 * stagger(us.len()) + LINE];
+        let mut arrays = staggered(&mut room, us.len());
+        let [ts, ..] = &mut arrays;
+        ts.iter_mut().zip(&places).for_each(|(t, place)| *t = place.1);
         let cell = 4 * (p + 1) * (q + 1);
         let arch = Arch::new();
-        let mut xyz = [vec![0.0; us.len()], vec![0.0; us.len()], vec![0.0; us.len()]];
-        let mut coefficients = vec![0.0; 4 * (p + 1) * runs.len()];
+        let [ts, x, y, z] = arrays;
+        let mut coefficients = [vec![0.0; 4 * (p + 1) * runs.len()], vec![0.0; 4 * (p + 1) * runs.len()]];
         let mut weights = vec![0.0; q + 1];
-        for (j, &v) in vs.iter().enumerate() {
-            let (span_v, t_v) = along_v.locate(v);
-            bernstein(t_v, &mut weights);
-            arch.dispatch(Row {
-                nets: &self.nets[(span_v - along_v.span) as usize * cell..],
-                net_stride: (along_v.breaks.len() - 1) * cell,
-                form: self.form,
-                runs: &runs,
-                weights: &weights,
-                coefficients: &mut coefficients,
-                ts: &ts,
-                xyz: &mut xyz,
+        // The coefficients of a row are found while the points of the row before it are: neither waits for the other.
+        for j in 0..=vs.len() {
+            let [ready, next] = &mut coefficients;
+            let line = vs.get(j).map(|&v| {
+                let (span_v, t_v) = along_v.locate(v);
+                bernstein(t_v, &mut weights);
+                Line {
+                    nets: &self.nets[(span_v - along_v.span) as usize * cell..],
+                    net_stride: (along_v.breaks.len() - 1) * cell,
+                    weights: &weights,
+                    coefficients: next,
+                }
             });
-            row(j, [&xyz[0], &xyz[1], &xyz[2]]);
+            let points = (j > 0).then_some(Points { coefficients: ready, ts, xyz: [x, y, z] });
+            arch.dispatch(Rows { form: self.form, runs: &runs, line, points });
+            if j > 0 {
+                row(j - 1, [x, y, z]);
+            }
+            coefficients.swap(0, 1);
         }
     }
+}
+
+/// Numbers in a line of the cache, and in a page.
+const LINE: usize = 8;
+const PAGE: usize = 512;
+
+/// From one of four arrays to the next: a quarter of a page beyond whole pages. Were all at the same place of their pages, the
+/// core would take loads of one for loads of what has just been stored into another.
+fn stagger(count: usize) -> usize {
+    count.next_multiple_of(PAGE) + PAGE / 4
+}
+
+/// Four arrays of `count` numbers that begin with a line of the cache.
+fn staggered(room: &mut [f64], count: usize) -> [&mut [f64]; 4] {
+    let skipped = room.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE);
+    let (a, rest) = room[skipped..].split_at_mut(stagger(count));
+    let (b, rest) = rest.split_at_mut(stagger(count));
+    let (c, d) = rest.split_at_mut(stagger(count));
+    [&mut a[..count], &mut b[..count], &mut c[..count], &mut d[..count]]
 }
 
 /// The Bernstein polynomials at `t`, of the degree that the length of `row` says.
@@ -135,45 +162,49 @@ fn powers(ordinates: &mut [f64]) {
     }
 }
 
-/// One row. Everything of it must be inlined into one function with the widest instructions there are: closures given to
-/// library functions (`map`, `from_fn`) would be compiled without them, so plain loops stand here.
-struct Row<'a> {
+/// The points of one row and the coefficients of the next. Everything of it must be inlined into one function with the widest
+/// instructions there are: closures given to library functions (`map`, `from_fn`) would be compiled without them, so plain
+/// loops stand here.
+struct Rows<'a> {
+    form: Form,
+    /// Spans, and how many of the points lie in each.
+    runs: &'a [(usize, usize)],
+    line: Option<Line<'a>>,
+    points: Option<Points<'a>>,
+}
+
+/// What the coefficients of a row are made of.
+struct Line<'a> {
     /// From the net of the first cell in this row of cells on.
     nets: &'a [f64],
     /// From one cell to the next along u.
     net_stride: usize,
-    form: Form,
-    /// Spans, and how many of the points lie in each.
-    runs: &'a [(usize, usize)],
     weights: &'a [f64],
     /// 4 (p + 1) a run.
     coefficients: &'a mut [f64],
-    ts: &'a [f64],
-    xyz: &'a mut [Vec<f64>; 3],
 }
 
-impl WithSimd for Row<'_> {
+/// What the points of a row are made of.
+struct Points<'a> {
+    coefficients: &'a [f64],
+    ts: &'a [f64],
+    xyz: [&'a mut [f64]; 3],
+}
+
+impl WithSimd for Rows<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let size = (self.coefficients.len() / self.runs.len().max(1)).max(1);
-        // All coefficients first, so that no point waits for those of its own span.
-        for (line, &(span, _)) in self.coefficients.chunks_exact_mut(size).zip(self.runs) {
-            let at = span * self.net_stride;
-            let net = &self.nets[at..at + size * self.weights.len()];
-            let rational = self.form == Form::Rational;
-            // The same code twice: with lengths that the compiler knows it becomes a row of multiply-adds.
-            match (<&mut [_; 16]>::try_from(&mut *line), <&[_; 4]>::try_from(self.weights)) {
-                (Ok(line), Ok(weights)) => row_of(simd, net, weights, line, rational),
-                _ => row_of(simd, net, self.weights, line, rational),
-            }
+        if let Some(line) = self.line {
+            line_of(simd, line, self.runs, self.form == Form::Rational);
         }
-        let [x, y, z] = self.xyz;
+        let Some(Points { coefficients, ts, xyz: [x, y, z] }) = self.points else { return };
+        let size = (coefficients.len() / self.runs.len().max(1)).max(1);
         let mut start = 0;
-        for (line, &(_, count)) in self.coefficients.chunks_exact(size).zip(self.runs) {
+        for (line, &(_, count)) in coefficients.chunks_exact(size).zip(self.runs) {
             let run = start..start + count;
-            let ts = &self.ts[run.clone()];
+            let ts = &ts[run.clone()];
             let out = [&mut x[run.clone()], &mut y[run.clone()], &mut z[run]];
             match self.form {
                 Form::Polynomial => points::<S, POLYNOMIAL>(simd, line, ts, out),
@@ -181,6 +212,22 @@ impl WithSimd for Row<'_> {
                 Form::AnyWeights => points::<S, ANY_WEIGHTS>(simd, line, ts, out),
             }
             start += count;
+        }
+    }
+}
+
+/// Steps 2 and 3 for all spans of a row.
+#[inline(always)]
+fn line_of<S: Simd>(simd: S, line: Line<'_>, runs: &[(usize, usize)], rational: bool) {
+    let Line { nets, net_stride, weights, coefficients } = line;
+    let size = (coefficients.len() / runs.len().max(1)).max(1);
+    for (line, &(span, _)) in coefficients.chunks_exact_mut(size).zip(runs) {
+        let at = span * net_stride;
+        let net = &nets[at..at + size * weights.len()];
+        // The same code twice: with lengths that the compiler knows it becomes a row of multiply-adds.
+        match (<&mut [_; 16]>::try_from(&mut *line), <&[_; 4]>::try_from(weights)) {
+            (Ok(line), Ok(weights)) => row_of(simd, net, weights, line, rational),
+            _ => row_of(simd, net, weights, line, rational),
         }
     }
 }
