@@ -5,6 +5,7 @@
 //! by whole periods; where a loop passes through a pole, both sides' parameters are kept as two chart points of one
 //! vertex.
 
+use crate::doubled::SharedEdge;
 use crate::edges::EdgeSamples;
 use crate::surface::{FaceSurface, Near};
 use chordal_brep::{Coedge, Face, Loop, Part, Pcurve};
@@ -59,6 +60,8 @@ pub(crate) struct FaceContext<'a, 's> {
     pub face: &'a Face,
     pub surface: &'a FaceSurface<'s>,
     pub edges: &'a [EdgeSamples],
+    /// Inner edges that it must do without: another face has them.
+    pub doubled: &'a [SharedEdge],
     /// Finer edges did not keep the loops from crossing: mesh the face as it is.
     pub last_resort: bool,
     /// The last round: take what there is.

@@ -7,6 +7,7 @@ use self::shape::{Shape, boundary_triangles, shape};
 use crate::bulk::Foreseen;
 use crate::chart::{FaceContext, Key, Segment};
 use crate::crossings::coarse_chords;
+use crate::doubled::SharedEdge;
 use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Cancel, Options};
 use crate::place::Rows;
@@ -25,6 +26,8 @@ pub(crate) struct FaceResult {
     pub keys: Vec<Key>,
     pub normals: Vec<DVec3>,
     pub triangles: Vec<[u32; 3]>,
+    /// Edges between triangles that other faces may have too.
+    pub inner: Vec<SharedEdge>,
     /// The first `2 · quads` triangles are halves of quadrilaterals.
     pub quads: usize,
     /// The outer loop runs against the face's sense: the neighbours tell which of the two is right.

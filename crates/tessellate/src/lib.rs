@@ -8,6 +8,7 @@ mod bulk;
 mod chart;
 mod crease;
 mod crossings;
+mod doubled;
 mod edge_method;
 mod edges;
 mod face;

@@ -1,6 +1,7 @@
 //! Proof: every triangle gets a bound; one over budget is flipped, gets a point inside, or asks its edge to be finer.
 
 use crate::chart::{Key, Segment};
+use crate::doubled::sorted;
 use crate::face::FaceWork;
 use crate::metric::{Limits, Metric};
 use crate::options::{Bound, Cancel, Options};
@@ -103,7 +104,10 @@ impl<'a> Prover<'a> {
     /// # Errors
     /// A sentence, where the face is given up.
     pub fn refine(&mut self, work: &mut FaceWork<'_, '_>) -> Result<Verdict, String> {
-        if matches!(self.bounds.surface(), Surface::Plane { .. }) && self.limits.length.is_infinite() {
+        if matches!(self.bounds.surface(), Surface::Plane { .. })
+            && self.limits.length.is_infinite()
+            && work.context.doubled.is_empty()
+        {
             return Ok(Verdict::Proven { error: 0.0, bound: "plane" });
         }
         let mut requests = Vec::new();
@@ -263,6 +267,18 @@ impl<'a> Prover<'a> {
         a == b || b == c || c == a
     }
 
+    /// An inner edge that another face has too.
+    fn doubled_side(work: &FaceWork<'_, '_>, t: u32) -> Option<usize> {
+        if work.context.doubled.is_empty() {
+            return None;
+        }
+        let keys = work.mesh.triangles[t as usize].map(|v| work.key(v));
+        let inner = |&i: &usize| work.mesh.neighbors[t as usize][i] != NONE;
+        (0..3)
+            .filter(inner)
+            .find(|&i| work.context.doubled.contains(&sorted([keys[(i + 1) % 3], keys[(i + 2) % 3]])))
+    }
+
     pub fn judge(&mut self, work: &FaceWork<'_, '_>, t: u32) -> (f64, Fault) {
         if Self::collapsed(work, t) {
             return (0.0, Fault::None);
@@ -271,6 +287,9 @@ impl<'a> Prover<'a> {
         let [a, b, c] = facet.uv;
         if self.accept && orient(a, b, c) < 0.0 {
             return (f64::INFINITY, Fault::None);
+        }
+        if let Some(i) = Self::doubled_side(work, t) {
+            return (f64::INFINITY, Fault::Inside(Some(i)));
         }
         let tolerance = self.allowed(work, work.mesh.triangles[t as usize]);
         let bound = self.bound(work, &facet, tolerance);

@@ -1,6 +1,7 @@
 //! The stages of one part, top to bottom, and the rounds in which faces ask for finer edges.
 
-use crate::chart::FaceContext;
+use crate::chart::{FaceContext, Key};
+use crate::doubled::{SharedEdge, doubled_edges, sorted};
 use crate::edge_method::EdgeMethod;
 use crate::edges::{EdgeSamples, EdgeUse};
 use crate::face::{FaceResult, Outcome, mesh_face};
@@ -26,6 +27,9 @@ const MAX_ROUNDS: usize = 8;
 
 /// In so many rounds chords are halved, later quartered: where a surface turns within almost no distance, halves do not get there.
 const HALVING_ROUNDS: usize = 3;
+
+/// Rounds in which faces give up edges that others have too.
+const SEPARATING_ROUNDS: usize = 3;
 
 /// From this round on loops that still cross are taken to cross in truth.
 const LAST_RESORT: usize = 6;
@@ -224,7 +228,7 @@ impl Job<'_> {
         found
     }
 
-    fn mesh_one(&self, index: usize, edges: &[EdgeSamples], round: usize) -> Outcome {
+    fn mesh_one(&self, index: usize, edges: &[EdgeSamples], round: usize, doubled: &[SharedEdge]) -> Outcome {
         let face = &self.part.faces[index];
         if let Some(reason) = unusable(face) {
             return Outcome::Failed(reason);
@@ -241,6 +245,7 @@ impl Job<'_> {
                 face,
                 surface,
                 edges,
+                doubled,
                 last_resort,
                 accept,
                 resolution: self.resolution,
@@ -284,7 +289,7 @@ impl Job<'_> {
             let outcomes: Vec<Outcome> = dirty
                 .par_iter()
                 .map(|&f| {
-                    let outcome = self.mesh_one(f, edges, round);
+                    let outcome = self.mesh_one(f, edges, round, &[]);
                     if round == 0 {
                         done(finished.fetch_add(1, Ordering::Relaxed) + 1);
                     }
@@ -319,6 +324,7 @@ impl Job<'_> {
             dirty.sort_unstable();
             dirty.dedup();
         }
+        self.separate(edges, &mut results);
         results
     }
 
@@ -363,6 +369,46 @@ impl Job<'_> {
             result.trace.add("faces left to the default methods", 1);
         }
         (*edges, *outcomes) = (again, found);
+    }
+
+    /// Meshes faces again that have an inner edge which another face has too.
+    fn separate(&self, edges: &[EdgeSamples], results: &mut [Result<Box<FaceResult>, String>]) {
+        let uses = |edge: u32| self.info[edge as usize].uses.iter().map(|u| u.0);
+        let is_flat = |face: u32| {
+            let surface = self.surfaces[face as usize].as_ref();
+            surface.is_some_and(|s| matches!(s.surface, Surface::Plane { .. }))
+        };
+        let mut given_up: Vec<(u32, SharedEdge)> = Vec::new();
+        for _ in 0..SEPARATING_ROUNDS {
+            let single = |i: &usize| edges[*i].sag.len() == 1;
+            let ends = |i: usize| {
+                [self.part.edges[i].start, self.part.edges[i].end].map(|v| Key::Vertex(v.index() as u32))
+            };
+            let chords = (0..edges.len()).filter(single).map(|i| sorted(ends(i)));
+            let more = doubled_edges(results, chords, uses, is_flat);
+            if more.is_empty() || self.cancel.is_cancelled() {
+                return;
+            }
+            let mut again: Vec<u32> = more.iter().map(|m| m.0).collect();
+            again.dedup();
+            given_up.extend(more);
+            given_up.sort_unstable();
+            let outcomes: Vec<(u32, Outcome)> = again
+                .into_par_iter()
+                .map(|f| {
+                    let of_face = given_up.iter().filter(|g| g.0 == f).map(|g| g.1);
+                    (f, self.mesh_one(f as usize, edges, 0, &of_face.collect::<Vec<_>>()))
+                })
+                .collect();
+            for (f, outcome) in outcomes {
+                // What was proven stays proven.
+                if let (Outcome::Done(new), Ok(old)) = (outcome, &mut results[f as usize])
+                    && (new.proven_error.is_finite() || !old.proven_error.is_finite())
+                {
+                    *old = new;
+                }
+            }
+        }
     }
 
     fn describe(

@@ -2,9 +2,11 @@
 
 use super::{FaceResult, FaceWork, Shape};
 use crate::chart::{Key, Segment};
+use crate::doubled::{SharedEdge, is_shareable, sorted};
 use crate::metric::{Limits, Sizing};
 use crate::options::{Bound, Options};
 use crate::strategy::bezier::pairs;
+use crate::triangulate::NONE;
 use chordal_nurbs::{DVec2, Surface, UvBox};
 
 impl FaceWork<'_, '_> {
@@ -24,6 +26,20 @@ impl FaceWork<'_, '_> {
             gap = gap.max(self.context.surface.point(uv).distance(self.position(keys[pole_corner])));
         }
         gap
+    }
+
+    /// The edges inside the face that another face may have too.
+    fn inner_edges(&self, keys: &[Key]) -> Vec<SharedEdge> {
+        let mut inner = Vec::new();
+        for (t, (corners, neighbors)) in self.mesh.triangles.iter().zip(&self.mesh.neighbors).enumerate() {
+            for i in (0..3).filter(|&i| neighbors[i] != NONE && neighbors[i] as usize > t) {
+                let pair = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| keys[v as usize]);
+                if is_shareable(pair) {
+                    inner.push(sorted(pair));
+                }
+            }
+        }
+        inner
     }
 
     /// Assembles the result.
@@ -46,6 +62,7 @@ impl FaceWork<'_, '_> {
             .map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
         let mut triangles: Vec<[u32; 3]> = triangles.collect();
         let quads = if options.quads { pairs_first(&self.quads, &mut triangles) } else { 0 };
+        let inner = self.inner_edges(&keys);
         let gap = gap.max(self.turn_pole_corners(&mut triangles, &mut keys));
         let mut boundary_error = 0.0f64;
         for point in &self.chart.points {
@@ -61,6 +78,7 @@ impl FaceWork<'_, '_> {
             uv: self.mesh.points,
             keys,
             triangles,
+            inner,
             quads,
             doubtful: self.chart.reversed,
             private,
