@@ -128,6 +128,19 @@ def folded_strip(path: Path) -> None:
     write_sheet(s, [s.face([s.bound(s.loop(uses), outer=True)], surface)], path)
 
 
+@case("leaf_thin", "a parallelogram and a patch on it, nearer together than the tolerance", solids=1, closed=True, faces=2)
+def leaf_thin(path: Path) -> None:
+    s = Step(path.stem)
+    height = lambda i, j: 0.02 if 0 < i < 3 and 0 < j < 3 else 0.0
+    net = [[(10.0 * i + 4.0 * j, 6.0 * j, height(i, j)) for j in range(4)] for i in range(4)]
+    ends = ((0, 1), (4, 4))
+    a, b, c, d = net[0][0], net[3][0], net[3][3], net[0][3]
+    sides = [s.segment(p, q) for p, q in ((a, b), (b, c), (c, d), (d, a))]
+    upper = s.face([s.bound(s.loop(sides), outer=True)], s.spline_surface((3, 3), net, ends, ends))
+    back = [(edge, not sense) for edge, sense in reversed(sides)]
+    write_solid(s, [upper, s.face([s.bound(s.loop(back), outer=True)], s.plane(O, DOWN, X))], path)
+
+
 @case("octant", "an octant of a ball as a rational patch with a collapsed row", solids=1, closed=True, faces=4)
 def octant(path: Path) -> None:
     s, r, h = Step(path.stem), 10.0, math.sqrt(0.5)
