@@ -273,7 +273,10 @@ impl<'a> Prover<'a> {
             return None;
         }
         let keys = work.mesh.triangles[t as usize].map(|v| work.key(v));
-        let inner = |&i: &usize| work.mesh.neighbors[t as usize][i] != NONE;
+        let inner = |&i: &usize| {
+            let across = work.mesh.neighbors[t as usize][i];
+            across != NONE && !Self::collapsed(work, across)
+        };
         (0..3)
             .filter(inner)
             .find(|&i| work.context.doubled.contains(&sorted([keys[(i + 1) % 3], keys[(i + 2) % 3]])))

@@ -30,11 +30,17 @@ impl FaceWork<'_, '_> {
 
     /// The edges inside the face that another face may have too.
     fn inner_edges(&self, keys: &[Key]) -> Vec<SharedEdge> {
+        let collapsed = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|v| keys[v as usize]);
+            a == b || b == c || c == a
+        };
         let mut inner = Vec::new();
         for (t, (corners, neighbors)) in self.mesh.triangles.iter().zip(&self.mesh.neighbors).enumerate() {
             for i in (0..3).filter(|&i| neighbors[i] != NONE && neighbors[i] as usize > t) {
                 let pair = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| keys[v as usize]);
-                if is_shareable(pair) {
+                // Across a triangle that is not written lies the boundary.
+                let both = !collapsed(*corners) && !collapsed(self.mesh.triangles[neighbors[i] as usize]);
+                if is_shareable(pair) && both {
                     inner.push(sorted(pair));
                 }
             }
