@@ -164,3 +164,42 @@ fn push_face(mesh: &mut PartMesh, sheet: &NurbsSurface, trimmed: bool) {
     let corners = uvs.into_iter().map(corner).collect();
     mesh.faces.push(FaceMesh { face, corners, triangles, quads: 0 });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mesh_covers_what_the_loops_enclose() {
+        let scenario = Scenario::new(32);
+        let (model, scene) = scenario.model();
+        assert_eq!((model.parts.len(), scene.placements().len()), (2, 2));
+        let faces: Vec<&FaceMesh> = scene.parts.iter().flat_map(|p| &p.mesh.faces).collect();
+        assert_eq!(faces.len(), 32);
+        let polygon = |radius: f64| 0.5 * CORNERS as f64 * (TAU / CORNERS as f64).sin() * radius * radius;
+        for (index, face) in faces.into_iter().enumerate() {
+            let areas: Vec<f64> = face
+                .triangles
+                .iter()
+                .map(|t| {
+                    let [a, b, c] = t.map(|k| face.corners[k as usize].uv);
+                    0.5 * (b - a).perp_dot(c - a)
+                })
+                .collect();
+            assert!(areas.iter().all(|&a| a > 0.0), "{index}: a triangle is turned over");
+            let wanted =
+                if Scenario::is_trimmed(index) { polygon(RADII[0]) - polygon(RADII[1]) } else { 1.0 };
+            assert!((areas.iter().sum::<f64>() - wanted).abs() < 1e-12, "{index}: {areas:?}");
+        }
+    }
+
+    #[test]
+    fn the_text_has_every_surface_and_loop() {
+        let text = Scenario::new(6).to_text();
+        let mut numbers = text.split_whitespace().map(|n| n.parse::<f64>().expect("a number"));
+        assert_eq!(numbers.next(), Some(6.0));
+        // The box; then sizes, knots, points; two of the six have two closed loops.
+        let sheet = 2 + 2 * 8 + 4 * 16 + 1;
+        assert_eq!(numbers.count(), 6 + 6 * sheet + 2 * 2 * (1 + 2 * CORNERS));
+    }
+}
