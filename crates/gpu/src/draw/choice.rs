@@ -25,6 +25,8 @@ pub(crate) struct Choice {
     pub texels: [f64; 2],
     /// The error it is made for, in the part's units.
     pub error: f64,
+    /// Some pieces of the border may be joined, so that no smaller error is served.
+    pub joined: bool,
 }
 
 impl Choice {
@@ -32,7 +34,14 @@ impl Choice {
     pub fn of(face: &ExactFace, error: f64) -> Self {
         // A texel is half as large as the pixel that shows it: the error is half a pixel.
         let texels = face.stretch.map(|s| (s / error * (0.5 / PIXEL_ERROR)).clamp(TEXELS[0], TEXELS[1]));
-        Self { steps: steps(face, error), border: border_steps(face.border_bend, error), texels, error }
+        let joined = face.shortest_piece <= error / PIXEL_ERROR;
+        Self {
+            steps: steps(face, error),
+            border: border_steps(face.border_bend, error),
+            texels,
+            error,
+            joined,
+        }
     }
 
     /// The same for samples that have to serve while the view moves.
@@ -47,6 +56,7 @@ impl Choice {
         let all = |has: [f64; 2], needs: [f64; 2]| (0..2).all(|axis| serves(has[axis], needs[axis]));
         all(self.steps, needed.steps)
             && serves(self.border, needed.border)
+            && (!self.joined || self.error <= needed.error)
             && (!textured || all(self.texels, needed.texels))
     }
 }
@@ -61,6 +71,9 @@ impl Choice {
             narrow(least, if self.border <= 2.0 { f64::INFINITY } else { 4.0 * least });
         } else {
             narrow(f64::INFINITY, 0.0);
+        }
+        if self.joined {
+            narrow(self.error, f64::INFINITY);
         }
         for axis in (0..2).filter(|_| textured) {
             let (has, least) =
@@ -92,7 +105,7 @@ impl ExactFace {
     }
 
     /// Per piece of the border how much its image bends, in the part's units, its parameter running over 0..=1.
-    pub(crate) fn border_bends(&self) -> impl Iterator<Item = f64> {
+    fn border_bends(&self) -> impl Iterator<Item = f64> {
         let [uu, uv, vv] = self.bends;
         let (size, stretch) = (self.uv.size(), DVec2::from(self.stretch));
         self.border_pieces().into_iter().map(move |piece| {
@@ -102,15 +115,47 @@ impl ExactFace {
         })
     }
 
-    /// Pairs of native parameters, the ends of short pieces of the border.
+    /// With what the border asks for.
+    pub(crate) fn with_border(mut self) -> Self {
+        self.measure_border();
+        self
+    }
+
+    /// How much the most bent piece of the border bends, and the length of the shortest, in the part's units.
+    pub(crate) fn measure_border(&mut self) {
+        self.border_bend = self.border_bends().fold(0.0, f64::max);
+        let stretch = DVec2::from(self.stretch);
+        let lengths = self.border_pieces().into_iter().map(|p| p.length_by_axis().dot(stretch));
+        self.shortest_piece = lengths.fold(f64::INFINITY, f64::min);
+    }
+
+    /// Pairs of native parameters, the ends of short pieces of the border. Pieces that are no longer than a pixel together are one.
     pub(crate) fn border(&self, error: f64) -> Vec<DVec2> {
-        let size = self.uv.size();
+        let (size, stretch) = (self.uv.size(), DVec2::from(self.stretch));
+        let native = |p: DVec2| self.uv.clamp(self.uv.min + p * size);
+        let pixel = error / PIXEL_ERROR;
         let mut found = Vec::new();
+        // Ends of the short pieces gathered, and their length.
+        let mut short: Option<([DVec2; 2], f64)> = None;
         for (piece, bend) in self.border_pieces().iter().zip(self.border_bends()) {
+            let ([start, end], length) = (piece.ends(), piece.length_by_axis().dot(stretch));
+            if let Some((ends, sum)) = &mut short
+                && ends[1] == start
+                && *sum + length <= pixel
+            {
+                (ends[1], *sum) = (end, *sum + length);
+                continue;
+            }
+            found.extend(short.take().into_iter().flat_map(|(ends, _)| ends.map(native)));
+            if length <= pixel {
+                short = Some(([start, end], length));
+                continue;
+            }
             let steps = border_steps(bend, error).ceil();
-            let at = |k: f64| self.uv.clamp(self.uv.min + piece.at(k / steps) * size);
+            let at = |k: f64| native(piece.at(k / steps));
             found.extend((0..steps as u32).flat_map(|k| [at(f64::from(k)), at(f64::from(k) + 1.0)]));
         }
+        found.extend(short.into_iter().flat_map(|(ends, _)| ends.map(native)));
         found
     }
 }
@@ -127,11 +172,33 @@ mod tests {
             border: 2.0,
             texels: [texels, 8.0],
             error: 1.0,
+            joined: false,
         };
         let has = choice(10.0, 100.0);
         assert!(has.serves(&choice(10.0, 100.0), true) && has.serves(&choice(5.0, 60.0), true));
         assert!(!has.serves(&choice(11.0, 100.0), false) && !has.serves(&choice(4.0, 100.0), false));
         assert!(has.serves(&choice(10.0, 300.0), false) && !has.serves(&choice(10.0, 300.0), true));
+    }
+
+    /// A border seen from afar takes no more pieces than pixels, and still goes all the way round.
+    #[test]
+    fn short_pieces_of_borders_are_joined() {
+        let net = (0..4).map(|k| DVec3::new(f64::from(k / 2), f64::from(k % 2), 0.0)).collect();
+        let knots = vec![0.0, 0.0, 1.0, 1.0];
+        let mut face = ExactFace::whole(NurbsSurface::new([1, 1], knots.clone(), knots, net, None).unwrap());
+        let at = |k: u32| {
+            DVec2::splat(0.5) + 0.4 * DVec2::from_angle(std::f64::consts::TAU * f64::from(k % 500) / 500.0)
+        };
+        face.loops = (0..500).map(|k| Cubic::line(at(k), at(k + 1))).collect();
+        face = face.with_border();
+        let far = Choice::of(&face, 10.0);
+        assert!(far.serves(&Choice::of(&face, 11.0), false) && !far.serves(&Choice::of(&face, 9.0), false));
+        for (pixel, most) in [(1e-4, 500), (0.1, 60), (10.0, 1)] {
+            let border = face.border(pixel * PIXEL_ERROR);
+            assert!(border.len() <= 2 * most && !border.is_empty(), "{} at {pixel}", border.len());
+            assert!(border.chunks(2).collect::<Vec<_>>().windows(2).all(|w| w[0][1] == w[1][0]));
+            assert_eq!(border[0], border[border.len() - 1]);
+        }
     }
 
     /// Between the errors that a choice says it serves, it does, and at what it was made for.

@@ -30,6 +30,8 @@ pub struct ExactFace {
     pub(crate) stretch: [f64; 2],
     /// How much the image of the most bent piece of its border bends.
     pub(crate) border_bend: f64,
+    /// About how long the shortest of them is, in the part's units.
+    pub(crate) shortest_piece: f64,
     /// Native parameters of lines at which the surface may have a kink.
     pub(crate) kinks: [Vec<f64>; 2],
     /// A box that holds the surface, in the part's units; `None` where weights allow none.
@@ -70,7 +72,7 @@ impl ExactFace {
         self.bounds = bounds(surface);
         self.outward = None;
         self.surface = surface.clone();
-        self.border_bend = self.border_bends().fold(0.0, f64::max);
+        self.measure_border();
     }
 }
 
@@ -124,8 +126,7 @@ fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters
         return None;
     }
     let face = ExactFace { loops: loops(surface, of_face, edges, uv), ..untrimmed(surface, uv)? };
-    let border_bend = face.border_bends().fold(0.0, f64::max);
-    Some(ExactFace { border_bend, ..face })
+    Some(face.with_border())
 }
 
 /// The face that fills the box.
@@ -148,9 +149,9 @@ fn untrimmed(surface: &Surface, uv: UvBox) -> Option<ExactFace> {
         kinks: [kinks_u, kinks_v],
         outward: None,
         border_bend: 0.0,
+        shortest_piece: 0.0,
     };
-    let border_bend = face.border_bends().fold(0.0, f64::max);
-    Some(ExactFace { border_bend, ..face })
+    Some(face.with_border())
 }
 
 /// The sides of triangles that one triangle alone has, as curves in the unit square; none where they are its border.
@@ -197,7 +198,7 @@ fn loops(surface: &Surface, of_face: &FaceMesh, edges: &EdgeParameters, uv: UvBo
         }
     }
     // A polygon within the square as large as the square is the square.
-    if 0.5 * doubled_area.abs() >= 1.0 - 1e-12 { Vec::new() } else { found }
+    if 0.5 * doubled_area.abs() >= 1.0 - 1e-12 { Vec::new() } else { Cubic::chained(found) }
 }
 
 /// Where the surface has a pole: the axis of parameters along which it does not move there.

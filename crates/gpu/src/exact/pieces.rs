@@ -1,6 +1,7 @@
 //! Cubic pieces of trimming curves.
 
 use chordal_nurbs::DVec2;
+use std::collections::BTreeMap;
 
 /// A cubic Bézier curve in the unit square of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,40 @@ impl Cubic {
             return Self::line(a, b);
         }
         Self { points: [a, a + at_a / 3.0, b - at_b / 3.0, b] }
+    }
+
+    /// Pieces in an order in which each begins where the one before it ends, as far as there is one.
+    pub fn chained(pieces: Vec<Self>) -> Vec<Self> {
+        let bits = |p: DVec2| [p.x.to_bits(), p.y.to_bits()];
+        let mut starts: BTreeMap<[u64; 2], Vec<usize>> = BTreeMap::new();
+        // The first of several is taken first.
+        for (index, piece) in pieces.iter().enumerate().rev() {
+            starts.entry(bits(piece.points[0])).or_default().push(index);
+        }
+        let mut used = vec![false; pieces.len()];
+        let mut order = Vec::with_capacity(pieces.len());
+        for first in 0..pieces.len() {
+            let mut next = Some(first).filter(|k| !used[*k]);
+            while let Some(index) = next {
+                used[index] = true;
+                order.push(pieces[index]);
+                let after = starts.get_mut(&bits(pieces[index].points[3]));
+                next = after.and_then(|list| {
+                    while let Some(k) = list.pop() {
+                        if !used[k] {
+                            return Some(k);
+                        }
+                    }
+                    None
+                });
+            }
+        }
+        order
+    }
+
+    /// Its ends.
+    pub fn ends(&self) -> [DVec2; 2] {
+        [self.points[0], self.points[3]]
     }
 
     /// The point at `t`, 0..=1.
@@ -137,6 +172,20 @@ mod tests {
         assert_eq!(ends[1], ends[2]);
         assert_eq!(ends[3], ends[4]);
         assert_eq!((ends[0], ends[5]), ([0.1, 0.5], [0.9, 0.45]));
+    }
+
+    #[test]
+    fn chains_run_from_end_to_end() {
+        let at = |k: usize| DVec2::from_angle(k as f64);
+        let loop_of = |first: usize| (0..7).map(move |k| Cubic::line(at(first + k), at(first + (k + 1) % 7)));
+        let mut pieces: Vec<Cubic> = loop_of(0).chain(loop_of(20)).collect();
+        pieces.swap(1, 9);
+        pieces.swap(3, 5);
+        let chained = Cubic::chained(pieces.clone());
+        assert_eq!(chained.len(), pieces.len());
+        assert!(pieces.iter().all(|p| chained.contains(p)));
+        let breaks = chained.windows(2).filter(|w| w[0].ends()[1] != w[1].ends()[0]).count();
+        assert_eq!(breaks, 1);
     }
 
     #[test]
