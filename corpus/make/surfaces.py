@@ -317,6 +317,22 @@ def curve_bounded(path: Path) -> None:
     s.write(path)
 
 
+@case("curve_bounded_pole", "CURVE_BOUNDED_SURFACE round an octant of a ball: one of its four curves is a single point",
+      solids=0, closed=False, faces=1)
+def curve_bounded_pole(path: Path) -> None:
+    s, r, h = Step(path.stem), 10.0, math.sqrt(0.5)
+    net = [[(r, 0, 0), (r, 0, r), (0, 0, r)], [(r, r, 0), (r, r, r), (0, 0, r)], [(0, r, 0), (0, r, r), (0, 0, r)]]
+    ends = ((0, 1), (3, 3))
+    surface = s.spline_surface((2, 2), net, ends, ends, [[1, h, 1], [h, 0.5, h], [1, h, 1]])
+    corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+    pcurves = [_straight_pcurve(s, surface, p, q) for p, q in zip(corners, [*corners[1:], corners[0]])]
+    segments = [s.add(f"COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,{pcurve})") for pcurve in pcurves]
+    border = s.add(f"OUTER_BOUNDARY_CURVE('',{refs(segments)},.F.)")
+    bounded = s.add(f"CURVE_BOUNDED_SURFACE('',{surface},({border}),.F.)")
+    s.part([s.axes(), s.add(f"GEOMETRIC_SET('',({bounded}))")], "GEOMETRICALLY_BOUNDED_SURFACE_SHAPE_REPRESENTATION")
+    s.write(path)
+
+
 def _straight_pcurve(s: Step, surface: str, p: Point, q: Point) -> str:
     ids = refs([s.add(f"CARTESIAN_POINT('',{numbers(c)})") for c in (p, q)])
     line = s.add(f"B_SPLINE_CURVE_WITH_KNOTS('',1,{ids},.UNSPECIFIED.,.F.,.F.,(2,2),(0.,1.),.UNSPECIFIED.)")

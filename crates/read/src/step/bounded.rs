@@ -6,7 +6,7 @@ use super::document::{Ix, Res};
 use super::faces::Trimmed;
 use super::keyword::Kw;
 use chordal_brep::{Coedge, Edge, EdgeId, Loop, Pcurve, Source, VertexId};
-use chordal_nurbs::{CompositeSegment, Curve, Curve2, DVec2, Range, Surface, UvBox};
+use chordal_nurbs::{CompositeSegment, Curve, Curve2, DVec2, DVec3, Range, Surface, UvBox};
 use std::sync::Arc;
 
 /// Two points closer than this part of a surface patch's size are one corner.
@@ -175,9 +175,13 @@ impl Builder<'_> {
         if segments.iter().any(endless) {
             return Err(self.doc.bad(ix, "a piece of it has no ends"));
         }
-        // Vertex i is where piece i ends and piece i + 1 starts.
-        let joints: Vec<VertexId> =
+        // Vertex i is where piece i ends and piece i + 1 starts; a piece that is a single point, at a pole, starts where it ends.
+        let points = single_points(&segments);
+        let mut joints: Vec<VertexId> =
             segments.iter().map(|s| self.new_vertex(s.curve.point(s.end), source)).collect();
+        for i in (0..joints.len()).filter(|&i| points[i]) {
+            joints[i] = joints[(i + joints.len() - 1) % joints.len()];
+        }
         let mut coedges = Vec::with_capacity(segments.len());
         for (i, segment) in segments.into_iter().enumerate() {
             let (before, after) = (joints[(i + joints.len() - 1) % joints.len()], joints[i]);
@@ -192,12 +196,32 @@ impl Builder<'_> {
                 _ => Vec::new(),
             };
             let id = EdgeId::from(self.part.edges.len());
-            self.part.edges.push(Edge { curve: Some(Arc::new(segment.curve)), range, start, end, source });
+            let curve = (!points[i]).then(|| Arc::new(segment.curve));
+            self.part.edges.push(Edge { curve, range, start, end, source });
             coedges.push(Coedge { edge: id, forward, pcurves });
         }
         Ok(coedges)
     }
 }
+
+/// Which pieces of a boundary stay in one place all along.
+fn single_points(segments: &[CompositeSegment]) -> Vec<bool> {
+    let samples = |s: &CompositeSegment| -> Vec<DVec3> {
+        (0..=PIECE_SAMPLES)
+            .map(|k| s.curve.point(s.start + (s.end - s.start) * f64::from(k) / f64::from(PIECE_SAMPLES)))
+            .collect()
+    };
+    let extent = |from: DVec3, points: &[DVec3]| points.iter().fold(0.0f64, |m, p| m.max(p.distance(from)));
+    let samples: Vec<Vec<DVec3>> = segments.iter().map(samples).collect();
+    let size = samples.iter().fold(0.0f64, |m, points| m.max(extent(samples[0][0], points)));
+    samples.iter().map(|points| extent(points[0], points) <= ONE_POINT * size && size > 0.0).collect()
+}
+
+/// Places along a piece of a boundary at which it is looked at.
+const PIECE_SAMPLES: u32 = 16;
+
+/// Points nearer than this share of a boundary's size are one.
+const ONE_POINT: f64 = 1e-7;
 
 /// A side as a coedge with its straight pcurve.
 fn coedge(edge: EdgeId, forward: bool, side: &Side) -> Coedge {
