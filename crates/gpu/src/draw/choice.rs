@@ -9,6 +9,8 @@ pub const PIXEL_ERROR: f64 = 0.5;
 const BORDER_STEPS: f64 = 64.0;
 /// Texels along a side of the texture of one face's trim, at least and at most.
 const TEXELS: [f64; 2] = [8.0, 2048.0];
+/// Pieces of a border that together are no longer than this many pixels are one; they serve until they look a pixel long.
+const JOINED: f64 = 0.5;
 /// How many times as fine as needed samples may be before they are made anew.
 const TOO_FINE: f64 = 2.0;
 /// How many times as fine as needed they are made where the view moves, so that the next frames need no new ones.
@@ -25,7 +27,7 @@ pub(crate) struct Choice {
     pub texels: [f64; 2],
     /// The error it is made for, in the part's units.
     pub error: f64,
-    /// Some pieces of the border may be joined, so that no smaller error is served.
+    /// Some pieces of the border may be joined, so that no error below half is served.
     pub joined: bool,
 }
 
@@ -34,7 +36,7 @@ impl Choice {
     pub fn of(face: &ExactFace, error: f64) -> Self {
         // A texel is half as large as the pixel that shows it: the error is half a pixel.
         let texels = face.stretch.map(|s| (s / error * (0.5 / PIXEL_ERROR)).clamp(TEXELS[0], TEXELS[1]));
-        let joined = face.shortest_piece <= error / PIXEL_ERROR;
+        let joined = face.shortest_piece <= JOINED * error / PIXEL_ERROR;
         Self {
             steps: steps(face, error),
             border: border_steps(face.border_bend, error),
@@ -56,7 +58,7 @@ impl Choice {
         let all = |has: [f64; 2], needs: [f64; 2]| (0..2).all(|axis| serves(has[axis], needs[axis]));
         all(self.steps, needed.steps)
             && serves(self.border, needed.border)
-            && (!self.joined || self.error <= needed.error)
+            && (!self.joined || JOINED * self.error <= needed.error)
             && (!textured || all(self.texels, needed.texels))
     }
 }
@@ -73,7 +75,7 @@ impl Choice {
             narrow(f64::INFINITY, 0.0);
         }
         if self.joined {
-            narrow(self.error, f64::INFINITY);
+            narrow(JOINED * self.error, f64::INFINITY);
         }
         for axis in (0..2).filter(|_| textured) {
             let (has, least) =
@@ -129,11 +131,11 @@ impl ExactFace {
         self.shortest_piece = lengths.fold(f64::INFINITY, f64::min);
     }
 
-    /// Pairs of native parameters, the ends of short pieces of the border. Pieces that are no longer than a pixel together are one.
+    /// Pairs of native parameters, the ends of short pieces of the border. Pieces that are short enough together are one.
     pub(crate) fn border(&self, error: f64) -> Vec<DVec2> {
         let (size, stretch) = (self.uv.size(), DVec2::from(self.stretch));
         let native = |p: DVec2| self.uv.clamp(self.uv.min + p * size);
-        let pixel = error / PIXEL_ERROR;
+        let longest = JOINED * error / PIXEL_ERROR;
         let mut found = Vec::new();
         // Ends of the short pieces gathered, and their length.
         let mut short: Option<([DVec2; 2], f64)> = None;
@@ -141,13 +143,13 @@ impl ExactFace {
             let ([start, end], length) = (piece.ends(), piece.length_by_axis().dot(stretch));
             if let Some((ends, sum)) = &mut short
                 && ends[1] == start
-                && *sum + length <= pixel
+                && *sum + length <= longest
             {
                 (ends[1], *sum) = (end, *sum + length);
                 continue;
             }
             found.extend(short.take().into_iter().flat_map(|(ends, _)| ends.map(native)));
-            if length <= pixel {
+            if length <= longest {
                 short = Some(([start, end], length));
                 continue;
             }
@@ -192,8 +194,8 @@ mod tests {
         face.loops = (0..500).map(|k| Cubic::line(at(k), at(k + 1))).collect();
         face = face.with_border();
         let far = Choice::of(&face, 10.0);
-        assert!(far.serves(&Choice::of(&face, 11.0), false) && !far.serves(&Choice::of(&face, 9.0), false));
-        for (pixel, most) in [(1e-4, 500), (0.1, 60), (10.0, 1)] {
+        assert!(far.serves(&Choice::of(&face, 11.0), false) && !far.serves(&Choice::of(&face, 4.9), false));
+        for (pixel, most) in [(1e-4, 500), (0.1, 120), (10.0, 1)] {
             let border = face.border(pixel * PIXEL_ERROR);
             assert!(border.len() <= 2 * most && !border.is_empty(), "{} at {pixel}", border.len());
             assert!(border.chunks(2).collect::<Vec<_>>().windows(2).all(|w| w[0][1] == w[1][0]));
