@@ -213,7 +213,20 @@ def table(lines: list[Line], names: list[str], args: argparse.Namespace) -> str:
         share = f"{line.proven / line.tolerance:.3f}" if line.proven is not None and line.tolerance else ""
         far = f"{line.measured / (line.tolerance + line.gap):.3f}" if line.measured is not None else ""
         out.append(f"| {line.model} | {line.strategy} | {line.bound} | {', '.join(line.faults)} | {share} | {far} |")
-    return "\n".join(out) + "\n"
+    return "\n".join([*out, *fewer(lines)]) + "\n"
+
+
+def fewer(lines: list[Line]) -> list[str]:
+    """Where another strategy needs fewer triangles than the default, both with a proof."""
+    kept = [line for line in lines if line.bound == "proven" and line.proven is not None and line.proven <= line.tolerance]
+    default = {line.model: line for line in kept if line.strategy == "default"}
+    found = [line for line in kept if line.model in default and line.triangles < default[line.model].triangles]
+    out = ["", "## Fewer triangles than the default, both proven", "",
+           f"On {len(default) - len({line.model for line in found})} of the {len(default)} models that the default proves no strategy has fewer.", ""]
+    if found:
+        out += ["| model | strategy | triangles | default |", "|---|---|---|---|"]
+    out += [f"| {line.model} | {line.strategy} | {line.triangles} | {default[line.model].triangles} |" for line in found]
+    return out
 
 
 def complete(lines: list[Line]) -> set[str]:

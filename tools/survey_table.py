@@ -25,8 +25,8 @@ STRATEGIES = ["grid", "cells", "coving", "delaunay-uniform", "delaunay-adaptive"
 OWN = {
     "grid": ["grid", "derivatives"],
     "cells": ["grid", "derivatives"],
-    "coving": ["coving", "grid", "derivatives"],
-    "delaunay-uniform": ["delaunay"],
+    "coving": ["coving", "size", "grid", "derivatives"],
+    "delaunay-uniform": ["delaunay", "size"],
     "delaunay-adaptive": ["delaunay"],
     "recursive": ["recursive", "derivatives"],
     "quadtree": ["quadtree", "node", "leaf_mesh", "tracking", "chords"],

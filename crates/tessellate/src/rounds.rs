@@ -34,6 +34,10 @@ const SEPARATING_ROUNDS: usize = 3;
 /// From this round on loops that still cross are taken to cross in truth.
 const LAST_RESORT: usize = 6;
 
+/// Faces that other methods leave undone are left to the default so often; from the second time on with their neighbours, which may
+/// be the ones that ask for finer edges.
+const LEAVINGS: usize = 2;
+
 /// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter.
 const AIM: f64 = 0.995;
 
@@ -351,24 +355,40 @@ impl Job<'_> {
     ) {
         let default =
             Options { strategy: Strategy::Default, edge_method: EdgeMethod::Default, ..self.options.clone() };
-        let undone = self.undone(outcomes);
         let count = |faces: &[bool]| faces.iter().filter(|&&f| f).count();
-        if default == *self.options || count(&undone) == 0 || self.cancel.is_cancelled() {
-            return;
+        let mut left = vec![false; outcomes.len()];
+        for pass in 0..LEAVINGS {
+            let undone = self.undone(outcomes);
+            if default == *self.options || count(&undone) == 0 || self.cancel.is_cancelled() {
+                return;
+            }
+            left.iter_mut().zip(&undone).for_each(|(left, undone)| *left |= undone);
+            if pass > 0 {
+                left = self.with_neighbours(&left);
+            }
+            self.left = Some((default.clone(), left.clone()));
+            let before = report.rounds;
+            let mut again = self.sample_edges();
+            let mut found = self.rounds(&mut again, report, &|_| ());
+            if count(&self.undone(&found)) >= count(&undone) {
+                report.rounds = before;
+                return;
+            }
+            let made = found.iter_mut().zip(&left).filter(|(_, left)| **left);
+            for result in made.filter_map(|(outcome, _)| outcome.as_mut().ok()) {
+                result.trace.add("faces left to the default methods", 1);
+            }
+            (*edges, *outcomes) = (again, found);
         }
-        self.left = Some((default, undone.clone()));
-        let before = report.rounds;
-        let mut again = self.sample_edges();
-        let mut found = self.rounds(&mut again, report, &|_| ());
-        if count(&self.undone(&found)) >= count(&undone) {
-            report.rounds = before;
-            return;
+    }
+
+    /// These faces and all that share an edge with them.
+    fn with_neighbours(&self, faces: &[bool]) -> Vec<bool> {
+        let mut all = faces.to_vec();
+        for info in self.info.iter().filter(|info| info.uses.iter().any(|&(f, _)| faces[f])) {
+            info.uses.iter().for_each(|&(f, _)| all[f] = true);
         }
-        let left = found.iter_mut().zip(&undone).filter(|(_, left)| **left);
-        for result in left.filter_map(|(outcome, _)| outcome.as_mut().ok()) {
-            result.trace.add("faces left to the default methods", 1);
-        }
-        (*edges, *outcomes) = (again, found);
+        all
     }
 
     /// Meshes faces again that have an inner edge which another face has too.
