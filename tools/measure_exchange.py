@@ -25,10 +25,10 @@ from pathlib import Path
 FOLDERS = ["iges", "brep", "iv", "x3d", "obj", "json", "3dm"]
 SKIPPED = {".txt", ".md", ".tsv"}
 ROUNDING = 1e-9
-TIMEOUT = 300
+TIMEOUT = 480
 # Places on one surface, and seconds, for looking again.
 FINE = 90000
-PATIENCE = 90
+PATIENCE = 240
 # Places on all surfaces from which the nearest point is looked for.
 SEEDS = 48000
 
