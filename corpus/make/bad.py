@@ -40,7 +40,7 @@ def header_only(path: Path) -> None:
     save(path, plain(path.stem).split("DATA;")[0])
 
 
-@bad_case("no_shape", "entities, but no shape", exit="2", phrase="no faces")
+@bad_case("no_shape", "entities, but no shape", exit="2", phrase="no shape")
 def no_shape(path: Path) -> None:
     s = Step(path.stem)
     s.product("nothing")
@@ -48,14 +48,14 @@ def no_shape(path: Path) -> None:
 
 
 @bad_case("truncated_tail", "cut off after the shell: the solid is missing, its faces can be saved", exit="0,1",
-          phrase="ends before")
+          phrase="truncated")
 def truncated_tail(path: Path) -> None:
     text = plain(path.stem)
     save(path, text[:text.index("MANIFOLD_SOLID_BREP") + 12])
 
 
 @bad_case("truncated_middle", "cut off in the middle of an entity, half of the faces are there", exit="0,1",
-          phrase="ends before")
+          phrase="truncated")
 def truncated_middle(path: Path) -> None:
     text = plain(path.stem)
     cut = [m.start() for m in re.finditer("ADVANCED_FACE", text)][4]
@@ -86,6 +86,14 @@ def missing_entity(path: Path) -> None:
     text = plain(path.stem)
     first = re.search(r"#(\d+)=CYLINDRICAL_SURFACE.*?;\n", text)
     save(path, text.replace(first[0], ""))
+
+
+@bad_case("missing_edge", "one oriented edge of a loop is not in the file", exit="1", phrase="goes without 1 of its 4 edges")
+def missing_edge(path: Path) -> None:
+    text = plain(path.stem)
+    loops = re.findall(r"=EDGE_LOOP\('',\(#\d+,(#\d+),#\d+,#\d+\)\)", text)
+    lost = re.search(loops[0] + r"=ORIENTED_EDGE.*?;\n", text)
+    save(path, text.replace(lost[0], ""))
 
 
 @bad_case("cyclic_references", "a curve that is its own basis and an assembly within itself", exit="1,2", phrase="")

@@ -208,12 +208,25 @@ impl Builder<'_> {
             args.skip(1);
         }
         let mut coedges = Vec::new();
-        for oriented in args.references_strict()? {
-            let (edge, along) = self.oriented_edge(oriented)?;
-            coedges.push(coedge(&edge, along, surface));
+        let mut lost = Vec::new();
+        let references = args.references()?;
+        let edges = references.len();
+        for oriented in references {
+            match oriented.and_then(|oriented| self.oriented_edge(oriented)) {
+                Ok((edge, along)) => coedges.push(coedge(&edge, along, surface)),
+                Err(bad) => lost.push(bad),
+            }
         }
-        if coedges.is_empty() {
+        if coedges.is_empty() && lost.is_empty() {
             return Err(self.doc.bad(ix, "has no edges"));
+        }
+        // Where at least as many edges are left as are lost, straight ones take their places below.
+        match lost.into_iter().next() {
+            Some(bad) if coedges.len() < 2 || coedges.len() < edges - coedges.len() => return Err(bad),
+            Some(bad) => self
+                .doc
+                .lose(ix, format!("goes without {} of its {edges} edges: {bad}", edges - coedges.len())),
+            None => {}
         }
         self.mend_chain(ix, &mut coedges);
         if !forward {
