@@ -129,14 +129,14 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
     for i in np.argsort(-best):
         if best[i] <= 0.99 * tolerance or time.monotonic() > deadline:
             break
-        best[i] = closer(verify, exchange, bodies, probes[i], best[i])
+        best[i] = closer(verify, exchange, bodies, probes[i], best[i], 0.99 * tolerance)
     worst = int(best.argmax())
     return {"to_mesh": float(off.max()), "to_surface": float(best.max()), "gap": 0.0, "diagonal": diagonal,
             "faces": len(patches), "worst": samples[off.argmax()].tolist(), "worst2": probes[worst].tolist(),
             "size": float(np.abs(points).max())}
 
 
-def closer(verify, exchange, bodies: list, p, best: float) -> float:
+def closer(verify, exchange, bodies: list, p, best: float, enough: float) -> float:
     """The distance of one point from the trimmed surfaces, by ever finer grids around the best few places."""
     import numpy as np
 
@@ -148,18 +148,34 @@ def closer(verify, exchange, bodies: list, p, best: float) -> float:
         if fine is None:
             seeds = grid(face, patch, FINE)
             fine = body[6] = seeds, verify.cKDTree(face.d0(seeds))
-        for uv in fine[0][fine[1].query(p, k=4)[1]]:
+        for fine_uv in fine[0][fine[1].query(p, k=4)[1]]:
+            uv = fine_uv
             size = 3 * FINE**-0.5 * (high - low)
             for _ in range(14):
                 lattice = np.stack(np.meshgrid(*[np.linspace(-1, 1, 7)] * 2), -1).reshape(-1, 2)
                 around = np.clip(uv + lattice * size, low, high)
                 found = np.linalg.norm(face.d0(around) - p, axis=1)
                 uv, size = around[found.argmin()], 0.55 * size
+            if found.min() > enough:
+                uv, least_found = descended(face, p, fine_uv, low, high)
+                found = np.minimum(found, least_found)
             d = float(found.min())
             if border is not None and not exchange.inside(patch, loops, uv[None])[0]:
                 d = float(border.distance(p[None])[0])
             best = min(best, d)
     return best
+
+
+def descended(face, p, start, low, high) -> tuple:
+    """The nearest place by a simplex from one place: lattices get stuck where one parameter hardly moves the point, at poles."""
+    import numpy as np
+    from scipy.optimize import minimize
+
+    off = lambda uv: float(np.linalg.norm(face.d0(np.clip(uv, low, high)[None])[0] - p))
+    step = FINE**-0.5 * (high - low)
+    simplex = [start, start + [step[0], 0], start + [0, step[1]]]
+    found = minimize(off, start, method="Nelder-Mead", options={"initial_simplex": simplex, "xatol": 1e-12, "fatol": 1e-12})
+    return np.clip(found.x, low, high), found.fun
 
 
 def rim(face, loop, low, high) -> list:

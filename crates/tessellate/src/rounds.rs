@@ -398,6 +398,7 @@ impl Job<'_> {
             let surface = self.surfaces[face as usize].as_ref();
             surface.is_some_and(|s| matches!(s.surface, Surface::Plane { .. }))
         };
+        let hopeless = self.undone(results);
         let mut given_up: Vec<(u32, SharedEdge)> = Vec::new();
         for _ in 0..SEPARATING_ROUNDS {
             let single = |i: &usize| edges[*i].sag.len() == 1;
@@ -405,7 +406,9 @@ impl Job<'_> {
                 [self.part.edges[i].start, self.part.edges[i].end].map(|v| Key::Vertex(v.index() as u32))
             };
             let chords = (0..edges.len()).filter(single).map(|i| sorted(ends(i)));
-            let more = doubled_edges(results, chords, uses, is_flat);
+            let mut more = doubled_edges(results, chords, uses, is_flat);
+            // A face of which nothing is proven has worse faults, and takes long.
+            more.retain(|&(face, _)| !hopeless[face as usize]);
             if more.is_empty() || self.cancel.is_cancelled() {
                 return;
             }
