@@ -29,6 +29,8 @@ TIMEOUT = 480
 # Places on one surface, and seconds, for looking again.
 FINE = 90000
 PATIENCE = 240
+# Sides from which a pole is left.
+SIDES = 97
 # Places on all surfaces from which the nearest point is looked for.
 SEEDS = 48000
 
@@ -148,7 +150,16 @@ def closer(verify, exchange, bodies: list, p, best: float, enough: float) -> flo
         if fine is None:
             seeds = grid(face, patch, FINE)
             fine = body[6] = seeds, verify.cKDTree(face.d0(seeds))
-        for fine_uv in fine[0][fine[1].query(p, k=4)[1]]:
+        near = fine[0][fine[1].query(p, k=4)[1]]
+        # At a pole the nearest seeds are one point in space, and the nearest point may lie to any side of it.
+        around_it = np.repeat(near[:1], SIDES, 0)
+        turned = around_it.copy()
+        around_it[:, 0], turned[:, 1] = (np.linspace(low[k], high[k], SIDES) for k in (0, 1))
+        sides = np.concatenate([around_it, turned])
+        same = np.linalg.norm(face.d0(sides) - face.d0(near[:1]), axis=1) < enough
+        for fine_uv in np.concatenate([near, sides[same]]):
+            if best <= enough:
+                return best
             uv = fine_uv
             size = 3 * FINE**-0.5 * (high - low)
             for _ in range(14):
