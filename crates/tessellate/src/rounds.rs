@@ -334,14 +334,19 @@ impl Job<'_> {
 
     /// Faces that have no triangles, or no proof where one was asked for.
     fn undone(&self, outcomes: &[Result<Box<FaceResult>, String>]) -> Vec<bool> {
-        let allowed = self.limits.tolerance.max(self.limits.boundary);
         let is_undone = |outcome: &Result<Box<FaceResult>, String>| match outcome {
             Err(_) => true,
-            // Of NaN nothing is proven either.
-            Ok(result) => self.options.bound == Bound::Proven && !(result.proven_error <= allowed),
+            Ok(result) => self.is_undone(result),
         };
         let faces = self.part.faces.iter().zip(outcomes);
         faces.map(|(face, outcome)| unusable(face).is_none() && is_undone(outcome)).collect()
+    }
+
+    /// No proof where one was asked for.
+    fn is_undone(&self, result: &FaceResult) -> bool {
+        let allowed = self.limits.tolerance.max(self.limits.boundary);
+        // Of NaN nothing is proven either.
+        self.options.bound == Bound::Proven && !(result.proven_error <= allowed)
     }
 
     /// Meshes the part once more where other methods left faces undone, those and their edges by the default methods from the
@@ -425,10 +430,10 @@ impl Job<'_> {
                 .collect();
             for (f, outcome) in outcomes {
                 // What was proven stays proven.
-                if let (Outcome::Done(new), Ok(old)) = (outcome, &mut results[f as usize])
-                    && (new.proven_error.is_finite() || !old.proven_error.is_finite())
+                if let Outcome::Done(new) = outcome
+                    && !self.is_undone(&new)
                 {
-                    *old = new;
+                    results[f as usize] = Ok(new);
                 }
             }
         }
