@@ -29,6 +29,8 @@ TIMEOUT = 480
 # Places on one surface, and seconds, for looking again.
 FINE = 90000
 PATIENCE = 240
+# Places near a point from which all that look too far are projected again.
+PLACES = 6
 # Sides from which a pole is left.
 SIDES = 97
 # Places on all surfaces from which the nearest point is looked for.
@@ -126,7 +128,10 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
             best[todo] = np.minimum(best[todo], d)
     samples = np.concatenate(samples) if samples else np.zeros((0, 3))
     off = distance(samples)[0]
-    # The projection may end beside the nearest point: what looks too far is looked for again, the worst first.
+    # The projection may end beside the nearest point: what looks too far is looked for again, all at once from more places, and
+    # what is left one by one, the worst first.
+    for body in bodies:
+        from_more_places(verify, exchange, body, probes, best, 0.99 * tolerance)
     deadline = time.monotonic() + PATIENCE
     for i in np.argsort(-best):
         if best[i] <= 0.99 * tolerance or time.monotonic() > deadline:
@@ -136,6 +141,30 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
     return {"to_mesh": float(off.max()), "to_surface": float(best.max()), "gap": 0.0, "diagonal": diagonal,
             "faces": len(patches), "worst": samples[off.argmax()].tolist(), "worst2": probes[worst].tolist(),
             "size": float(np.abs(points).max())}
+
+
+def from_more_places(verify, exchange, body: list, probes, best, enough: float) -> None:
+    """Lowers the distances of all points that look too far from one surface, by projections from several places near each."""
+    import numpy as np
+
+    face, patch, loops, border, least, most, _ = body
+    outside = np.linalg.norm(np.maximum(0, np.maximum(least - probes, probes - most)), axis=1)
+    todo = np.flatnonzero((best > enough) & (outside < best))
+    if not len(todo):
+        return
+    seeds = grid(face, patch, FINE)
+    places = face.d0(seeds)
+    # From a pole no projection gets away: the places next to it are asked instead.
+    _, group, count = np.unique(np.round(places / (1e-7 * np.abs(places).max())), axis=0, return_inverse=True, return_counts=True)
+    alone = count[group.ravel()] <= 2
+    seeds, tree = seeds[alone], verify.cKDTree(places[alone])
+    for column in tree.query(probes[todo], k=PLACES)[1].T:
+        far = best[todo] > enough
+        uv, d = face.project(probes[todo[far]], seeds[column[far]])
+        if border is not None:
+            out = ~exchange.inside(patch, loops, uv)
+            d[out] = border.distance(probes[todo[far][out]])
+        best[todo[far]] = np.minimum(best[todo[far]], d)
 
 
 def closer(verify, exchange, bodies: list, p, best: float, enough: float) -> float:

@@ -116,6 +116,36 @@ def thin_tube() -> str:
     )
 
 
+@good("whisker", "a bent closed tube thinner than the tolerance that the rest of the scene asks for", faces=2, closed=False)
+def whisker() -> str:
+    net = []
+    for j in range(7):
+        a = math.tau * (j % 4) / 4
+        across = (0.005 * math.cos(a), 0.005 * math.sin(a))
+        net += [(0.17 * i + across[0], (0, 0.07, 0.24, 0.06)[i] + across[1], -0.01 * i) for i in range(4)]
+    tube = (
+        "NurbsPatchSurface { solid FALSE uOrder 4 vOrder 4 uDimension 4 vDimension 7 uKnot [ 0 0 0 0 1 1 1 1 ]\n"
+        f" vKnot [ -2 -2 -1 0 1 2 3 4 5 6 6 ] controlPoint CoordinateDouble {{ point [ {numbers(net)} ] }} }}"
+    )
+    return CLASSIC + (
+        f"Shape {{ geometry {tube} }}\n"
+        f"Transform {{ translation 0 0 -4 scale 4 4 4 children Shape {{ geometry {patch_node('solid FALSE')} }} }}\n"
+    )
+
+
+@good("box_of_one_surface", "a box whose sides and corners are doubled control points of one surface", faces=1, closed=True)
+def box_of_one_surface() -> str:
+    square = [(0, 1), (1, 1), (1, 1), (1, 0), (1, -1), (1, -1), (0, -1), (-1, -1), (-1, -1), (-1, 0), (-1, 1), (-1, 1), (0, 1)]
+    rows = [(0, 1), (0.5, 1), (1, 1), (1, 1), (1, 0), (1, -1), (1, -1), (0.5, -1), (0, -1)]
+    net = [(r * x, r * y, z) for r, z in rows for x, y in square]
+    return CLASSIC + (
+        "Transform { rotation -0.81 -0.557 0.181 0.769 children Shape { geometry NurbsPatchSurface {\n"
+        " uClosed TRUE vClosed TRUE uOrder 3 vOrder 3 uDimension 13 vDimension 9\n"
+        " uKnot [ 0 0 0 1 2 3 4 5 6 7 8 9 10 11 11 11 ] vKnot [ 0 0 0 1 2 3 4 5 6 7 7 7 ]\n"
+        f" controlPoint Coordinate {{ point [ {numbers(net)} ] }} }} }} }}\n"
+    )
+
+
 @good("swept", "a spline swept along a line, and a profile swung round a circle", faces=2, closed=False)
 def swept() -> str:
     arc = f"weight [ 1 {W:.9g} 1 ]"

@@ -2,8 +2,9 @@
 //!
 //! A seam's two sides lie whole periods apart in the chart: nothing is between them. Where triangles whose corners are not
 //! three vertices were left out, a sliver of surface between the two sides has a single mesh edge over it. At a pole
-//! the sectors of [`crate::fan`] cover it; elsewhere it needs a bound of its own, that of the vector error e = S − L against the
-//! affine map L of the sliver onto the edge (see `chordal_nurbs::facet_bound` for the formula along one direction).
+//! the sectors of [`crate::fan`] cover it; elsewhere it needs a bound of its own: that of the vector error e = S − L against the
+//! affine map L of the sliver onto the edge (see `chordal_nurbs::facet_bound` for the formula along one direction), or, where
+//! the sides are a hair apart on either side of a crease, its width, beyond what bounds the triangles at its sides.
 
 use crate::face::Chart;
 use crate::halves::Half;
@@ -14,8 +15,9 @@ use chordal_nurbs::{DVec2, DVec3, Piece, Surface, SurfaceBounds, UvBox};
 pub(crate) enum Cut {
     /// Nothing: one side is the other moved by whole periods.
     Seam,
-    /// A sliver, whose distance from its edge is at most this; zero where something else covers it.
-    Sliver(f64),
+    /// A sliver, whose distance from its edge is at most `alone`, zero where something else covers it; it is also at most
+    /// `width` wide.
+    Sliver { alone: f64, width: f64 },
 }
 
 /// How far apart in the chart (relative to its extent) two sides of a seam may be by rounding.
@@ -45,7 +47,7 @@ pub(crate) fn judge(
     if projected && sides.iter().any(|h| chart.touches_pole(h))
         || sides.iter().all(|h| chart.is_fan(h.triangle))
     {
-        return Cut::Sliver(0.0);
+        return Cut::Sliver { alone: 0.0, width: 0.0 };
     }
     let turns = if close(off_b) { at_b } else { at_a };
     let (a2, b2) = (a2 - turns, b2 - turns);
@@ -56,7 +58,27 @@ pub(crate) fn judge(
         .filter(|(uv, _)| uv[0] != uv[1] && uv[1] != uv[2] && uv[2] != uv[0])
         .map(|(uv, ends)| vector_bound(bounds, *uv, *ends, chart, scratch))
         .fold(0.0, f64::max);
-    Cut::Sliver(error)
+    let width = width(bounds, [a, b, b2, a2], chart, scratch);
+    Cut::Sliver { alone: error, width }
+}
+
+/// How far apart the two sides a–b and a2–b2 of a sliver are at most: ‖S(x + d) − S(x)‖ ≤ max ‖DS[d]‖ over the sliver's box, by
+/// the derivatives at one corner, the second ones over the box, and the jumps within.
+fn width(bounds: &SurfaceBounds<'_>, uv: [DVec2; 4], chart: &Chart<'_>, pieces: &mut Vec<Piece>) -> f64 {
+    let [a, b, b2, a2] = uv;
+    let uv_box = UvBox::from_points(uv);
+    pieces.clear();
+    let kink = bounds.pieces(uv_box, pieces);
+    if pieces.is_empty() {
+        return f64::INFINITY;
+    }
+    let norms = pieces.iter().fold([0.0f64; 3], |m, p| std::array::from_fn(|i| m[i].max(p.norms[i])));
+    let (_, du, dv) = chart.surface.jet1(chart.wrap.apply(a));
+    let size = uv_box.size();
+    let along_u = du.length() + norms[0] * size.x + norms[1] * size.y + kink.x;
+    let along_v = dv.length() + norms[1] * size.x + norms[2] * size.y + kink.y;
+    let d = (a2 - a).abs().max((b2 - b).abs());
+    along_u * d.x + along_v * d.y
 }
 
 /// An upper bound of ‖S − L‖ over a triangle of the chart, L affine with the given images of the corners.

@@ -52,7 +52,7 @@ pub(crate) struct Chart<'a> {
     pub surface: &'a Surface,
     pub mesh: &'a FaceMesh,
     pub uv_box: UvBox,
-    wrap: Wrap,
+    pub wrap: Wrap,
     periods: [Option<f64>; 2],
     poles: Vec<Pole>,
     /// The surface at every corner.

@@ -25,21 +25,14 @@ pub(crate) fn prove(
     if !context.options.proven || !bounds.is_bounded() {
         return;
     }
-    let mut scratch = Vec::new();
     let mut sides = vec![[Side::Inner; 3]; chart.mesh.triangles.len()];
     let mut chords = 0.0f64;
     for (half, sag) in &at.chords {
         sides[half.triangle as usize][half.side as usize] = Side::Chord(*sag);
         chords = chords.max(*sag);
     }
-    let mut slivers = 0.0f64;
-    for cut in &at.cuts {
-        match cuts::judge(chart, &bounds, cut, &mut scratch) {
-            Cut::Seam => {}
-            Cut::Sliver(error) => slivers = slivers.max(error),
-        }
-    }
     let facets = facets_error(context, chart, &bounds, &sides, log.index);
+    let slivers = slivers_error(chart, &bounds, at, facets.error);
     // At poles the mesher goes by other parameters than it writes: claims cannot be compared there.
     found.claimable = facets.plain.max(chords);
     found.error = facets.error.max(chords).max(slivers);
@@ -53,6 +46,16 @@ pub(crate) fn prove(
         );
         log.add(ProblemKind::OverTolerance, what);
     }
+}
+
+/// The largest bound of what lies between the sides of cuts; the sides themselves are within `facets` of the mesh.
+fn slivers_error(chart: &Chart<'_>, bounds: &SurfaceBounds<'_>, at: &Boundary, facets: f64) -> f64 {
+    let mut scratch = Vec::new();
+    let error = |cut| match cuts::judge(chart, bounds, cut, &mut scratch) {
+        Cut::Seam => 0.0,
+        Cut::Sliver { alone, width } => alone.min(facets + width),
+    };
+    at.cuts.iter().map(error).fold(0.0, f64::max)
 }
 
 /// The largest bounds of a face's triangles.

@@ -1,5 +1,6 @@
 //! Proof: every triangle gets a bound; one over budget is flipped, gets a point inside, or asks its edge to be finer.
 
+mod flip;
 mod sampled;
 
 use self::sampled::sampled_bound;
@@ -68,6 +69,9 @@ const FINE_CHORD: f64 = 0.5;
 /// A chord that bends by less than this share of a facet's height is straight to it.
 const CHORD_BENDS: f64 = 0.25;
 
+/// Flips of triangles without area are followed by refining, and that by flips, this often.
+const SLIVER_PASSES: u32 = 3;
+
 /// What is wrong with a triangle.
 pub(crate) enum Fault {
     None,
@@ -119,7 +123,18 @@ impl<'a> Prover<'a> {
         let (per_triangle, more) = if self.hopeless { HOPELESS_BUDGET } else { BUDGET };
         let budget = per_triangle * work.mesh.triangles.len() + more;
         let mut steps = 0usize;
-        while let Some(t) = queue.pop_front() {
+        let mut sliver_passes = 0..SLIVER_PASSES;
+        loop {
+            let Some(t) = queue.pop_front() else {
+                if requests.is_empty() && sliver_passes.next().is_some() {
+                    self.flip_slivers(work);
+                    take_changed(work, &mut errors, &mut queue);
+                }
+                if queue.is_empty() {
+                    break;
+                }
+                continue;
+            };
             if !errors[t as usize].is_nan() {
                 continue;
             }
@@ -162,11 +177,7 @@ impl<'a> Prover<'a> {
                     }
                 }
             }
-            errors.resize(work.mesh.triangles.len(), f64::NAN);
-            for t in work.mesh.changed.drain(..) {
-                errors[t as usize] = f64::NAN;
-                queue.push_back(t);
-            }
+            take_changed(work, &mut errors, &mut queue);
         }
         if !requests.is_empty() {
             requests.sort_unstable();
@@ -313,7 +324,8 @@ impl<'a> Prover<'a> {
             && let Some(height) = self.folded_height(facet.xyz, corners.map(|v| work.normals[v as usize]))
         {
             // A chord that leaves the face by about as much as the facet is high must be finer; else an inner edge leaves it.
-            let coarse = (0..3).find(|&i| facet.sag[i].is_some_and(|sag| sag > 0.25 * height));
+            let leaves = |i: usize| facet.sag[i].or_else(|| boundary[i].then(|| bend(work, &facet, i)));
+            let coarse = (0..3).find(|&i| leaves(i).is_some_and(|bend| bend > CHORD_BENDS * height));
             let inner = || Fault::Fold(longest_inner(work, t, &facet));
             return (f64::INFINITY, coarse.map_or_else(inner, Fault::Edge));
         }
@@ -416,49 +428,6 @@ impl<'a> Prover<'a> {
         None
     }
 
-    /// Flips an inner edge of `t` where both new triangles are within the tolerance.
-    fn flip_helps(&mut self, work: &mut FaceWork<'_, '_>, t: u32) -> bool {
-        for i in 0..3 {
-            let other = work.mesh.neighbors[t as usize][i];
-            if other == NONE {
-                continue;
-            }
-            let c = work.mesh.triangles[t as usize];
-            let (apex, a, b) = (c[i], c[(i + 1) % 3], c[(i + 2) % 3]);
-            let Some(j) = (0..3).find(|&j| work.mesh.neighbors[other as usize][j] == t) else { continue };
-            let apex2 = work.mesh.triangles[other as usize][j];
-            if !work.mesh.can_flip(apex, a, b, apex2) {
-                continue;
-            }
-            let outer = [t, other].map(|t| std::array::from_fn::<_, 3, _>(|i| Self::sag(work, t, i)));
-            let facet = |corners: [u32; 3], sag: [Option<f64>; 3]| Facet {
-                uv: corners.map(|v| work.mesh.points[v as usize]),
-                xyz: corners.map(|v| work.xyz[v as usize]),
-                sag,
-            };
-            // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
-            let first = facet([apex, a, apex2], [outer[1][(j + 1) % 3], None, outer[0][(i + 2) % 3]]);
-            let second = facet([apex, apex2, b], [outer[1][(j + 2) % 3], outer[0][(i + 1) % 3], None]);
-            let turn = [[apex, a, apex2], [apex, apex2, b]].iter().any(|&corners| self.turns(work, corners));
-            let allowed = [[apex, a, apex2], [apex, apex2, b]].map(|corners| self.allowed(work, corners));
-            let long = work.xyz[apex as usize].distance(work.xyz[apex2 as usize]) > self.limits.length;
-            let folds = |corners: [u32; 3], xyz| {
-                self.folded_height(xyz, corners.map(|v| work.normals[v as usize])).is_some()
-            };
-            let folded = folds([apex, a, apex2], first.xyz) || folds([apex, apex2, b], second.xyz);
-            if !turn
-                && !long
-                && !folded
-                && self.bound(work, &first, allowed[0]).error <= allowed[0]
-                && self.bound(work, &second, allowed[1]).error <= allowed[1]
-            {
-                work.mesh.flip_edge(t, i);
-                return true;
-            }
-        }
-        false
-    }
-
     /// A boundary chord of a triangle that nothing else can mend.
     fn coarse_boundary(&self, work: &FaceWork<'_, '_>, t: u32) -> Option<(u32, u32)> {
         (0..3).find_map(|i| match self.boundary_segment(work, t, i) {
@@ -467,6 +436,15 @@ impl<'a> Prover<'a> {
             }
             _ => None,
         })
+    }
+}
+
+/// Triangles that changed are to be judged anew.
+fn take_changed(work: &mut FaceWork<'_, '_>, errors: &mut Vec<f64>, queue: &mut VecDeque<u32>) {
+    errors.resize(work.mesh.triangles.len(), f64::NAN);
+    for t in work.mesh.changed.drain(..) {
+        errors[t as usize] = f64::NAN;
+        queue.push_back(t);
     }
 }
 
@@ -489,10 +467,15 @@ fn close_to_boundary(
         let [p, a, b] = [0, 1, 2].map(|k| facet.uv[(i + k) % 3]);
         let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
         let height = work.context.surface.point(a.lerp(b, along)).distance(facet.xyz[i]);
-        let [from, to] = [1, 2].map(|k| facet.xyz[(i + k) % 3]);
-        let bend = work.context.surface.point(a.midpoint(b)).distance(from.midpoint(to));
-        height <= distance && bend > CHORD_BENDS * height
+        height <= distance && bend(work, facet, i) > CHORD_BENDS * height
     })
+}
+
+/// How far the surface leaves the middle of the edge opposite corner `i`.
+fn bend(work: &FaceWork<'_, '_>, facet: &Facet, i: usize) -> f64 {
+    let [a, b] = [1, 2].map(|k| (i + k) % 3);
+    let middle = work.context.surface.point(facet.uv[a].midpoint(facet.uv[b]));
+    middle.distance(facet.xyz[a].midpoint(facet.xyz[b]))
 }
 
 /// The longest; of those that only rounding tells apart the first, so that the same part elsewhere gets the same mesh.
