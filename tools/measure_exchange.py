@@ -153,18 +153,31 @@ def from_more_places(verify, exchange, body: list, probes, best, enough: float) 
     if not len(todo):
         return
     seeds = grid(face, patch, FINE)
-    places = face.d0(seeds)
-    # From a pole no projection gets away: the places next to it are asked instead.
-    _, group, count = np.unique(np.round(places / (1e-7 * np.abs(places).max())), axis=0, return_inverse=True, return_counts=True)
-    alone = count[group.ravel()] <= 2
-    seeds, tree = seeds[alone], verify.cKDTree(places[alone])
-    for column in tree.query(probes[todo], k=PLACES)[1].T:
+    # From a pole no projection gets away: only places inside are asked. Sides are reached from there.
+    low, high = np.array(face.uv[::2]), np.array(face.uv[1::2])
+    seeds = seeds[((seeds > low) & (seeds < high)).all(1)]
+    tree = verify.cKDTree(face.d0(seeds))
+    starts = list(seeds[tree.query(probes[todo], k=PLACES)[1]].transpose(1, 0, 2))
+    for start in [*starts, None, None]:
+        # What ended on a side goes on from the opposite one: the surface may be closed there.
+        start = across(face, ended) if start is None else start
         far = best[todo] > enough
-        uv, d = face.project(probes[todo[far]], seeds[column[far]])
+        uv, d = face.project(probes[todo[far]], start[far])
+        ended = start.copy()
+        ended[far] = uv
         if border is not None:
             out = ~exchange.inside(patch, loops, uv)
             d[out] = border.distance(probes[todo[far][out]])
         best[todo[far]] = np.minimum(best[todo[far]], d)
+
+
+def across(face, uv):
+    """Parameters on a side of the domain moved to the opposite side."""
+    import numpy as np
+
+    low, high = np.array(face.uv[::2]), np.array(face.uv[1::2])
+    near = 1e-9 * (high - low)
+    return np.where(uv <= low + near, high, np.where(uv >= high - near, low, uv))
 
 
 def closer(verify, exchange, bodies: list, p, best: float, enough: float) -> float:
