@@ -25,8 +25,9 @@ ROUNDING = 1e-9
 
 
 def load_verifier(path: str) -> ModuleType:
-    """The verifier as a module, with three changes: the reader is kept, so are the distances of its samples, and feet
-    are found on the inner part of a spindle torus and beyond the apex of a cone."""
+    """The verifier as a module, with four changes: the reader is kept, so are the distances of its samples, feet are found on
+    the inner part of a spindle torus and beyond the apex of a cone, and the other kernel's own search over the whole shape has
+    the last word on points that look too far."""
     spec = importlib.util.spec_from_file_location("verify", path)
     verify = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(verify)
@@ -52,10 +53,25 @@ def load_verifier(path: str) -> ModuleType:
     def project(face, points, uv):
         return far_foot(verify, face, points) if on_far_side(verify, face) else near_foot(face, points, uv)
 
+    near_seeds = verify.Reference.multi_seed
+
+    def multi_seed(reference, point, k=200):
+        found = near_seeds(reference, point, k)
+        return found if found <= verify.suspect else min(found, whole_shape(verify, reference, point))
+
+    verify.suspect = float("inf")
+    verify.Reference.multi_seed = multi_seed
     verify.FaceRef.project = project
     verify.load_step = load_step
     verify.MeshDist = Recording
     return verify
+
+
+def whole_shape(verify: ModuleType, reference: Any, point: np.ndarray) -> float:
+    """The distance of a point from all faces, by the other kernel."""
+    vertex = verify.BRepBuilderAPI_MakeVertex(verify.gp_Pnt(*map(float, point))).Vertex()
+    search = verify.BRepExtrema_DistShapeShape(vertex, reference.shape)
+    return float(search.Value()) if search.IsDone() else float("inf")
 
 
 def on_far_side(verify: ModuleType, face: Any) -> bool:
@@ -86,6 +102,7 @@ def measure(verify: ModuleType, reference: Any, origins: list[str | None], mesh:
     """One mesh of the model."""
     verify.MeshDist.largest = np.zeros(0)
     points, faces = verify.load_mesh(mesh)
+    verify.suspect = report["options"]["tolerance"] + report["max_gap"]
     # A face counts as missing when it is three times this away: the looseness of the file is no missing face.
     result = verify.verify(reference, points, faces, report["options"]["tolerance"] + report["max_gap"])
     if "error" in result:

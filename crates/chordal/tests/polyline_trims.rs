@@ -15,8 +15,8 @@ fn list(points: &[(f64, f64)]) -> String {
     points.iter().map(|(u, v)| format!("[{u}, {v}]")).collect::<Vec<_>>().join(", ")
 }
 
-fn polyline() -> String {
-    format!(r#"{{"type": "freeform", "dimension": 2, "points": [{}], "reversed": 1}}"#, list(&DIAMOND))
+fn polyline(points: &[(f64, f64)]) -> String {
+    format!(r#"{{"type": "freeform", "dimension": 2, "points": [{}], "reversed": 1}}"#, list(points))
 }
 
 /// The same polyline as a spline of degree 1, or with every side as a Bézier curve of a higher one.
@@ -88,7 +88,7 @@ fn fewest_chords(tolerance: f64) -> f64 {
 #[test]
 fn a_polyline_is_subdivided_as_finely_as_a_curve() {
     for strategy in [Strategy::Default, Strategy::Recursive, Strategy::Bezier] {
-        let given = [("polyline", polyline()), ("degree_1", spline(1)), ("degree_3", spline(3))];
+        let given = [("polyline", polyline(&DIAMOND)), ("degree_1", spline(1)), ("degree_3", spline(3))];
         let meshes = given.map(|(name, trim)| mesh(&format!("{name}_{strategy:?}"), &trim, strategy));
         let counts = meshes.each_ref().map(samples_of_edges);
         // Four straight sides over a bump: left alone they would have no sample at all. All sagittas allow at least this many chords.
@@ -102,4 +102,22 @@ fn a_polyline_is_subdivided_as_finely_as_a_curve() {
         let areas = meshes.each_ref().map(|outcome| outcome.report.area);
         assert!(areas.iter().all(|a| (a / areas[0] - 1.0).abs() < 1e-3), "{strategy:?}: {areas:?}");
     }
+}
+
+/// As many sides as a modeller writes for a smooth trim: far more than the tolerance asks for.
+const DENSE: usize = 720;
+
+#[test]
+fn chords_pass_over_the_points_of_dense_polylines() {
+    let on_ellipse = |k: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * (k % DENSE) as f64 / DENSE as f64).sin_cos();
+        (0.5 + 0.4 * cosine, 0.5 + 0.25 * sine)
+    };
+    let points: Vec<(f64, f64)> = (0..=DENSE).map(on_ellipse).collect();
+    let outcome = mesh("dense", &polyline(&points), Strategy::Default);
+    let samples = samples_of_edges(&outcome);
+    // The ellipse of semi-axes 4 and 2.5 has ∮√κ ds = 11.06; over √8ε that is 39 chords, and the sheet adds to them.
+    assert!((39..DENSE / 5).contains(&samples), "{samples}");
+    assert!(outcome.report.clean, "{:?}", outcome.report.undone);
+    assert!(outcome.report.boundary_error.is_some_and(|e| e > 0.001 && e <= 0.01));
 }

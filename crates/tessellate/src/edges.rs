@@ -4,8 +4,10 @@
 //! in that measure, and each is then checked by a proven bound. Faces never add boundary vertices on their own: what they find
 //! out later comes back as a request ([`EdgeSamples::split`]).
 
+mod corners;
 mod turns;
 
+use self::corners::{passed_over, smooth_pieces};
 use self::turns::{turning_less, turning_less_between};
 use crate::edge_method::EdgeMethod;
 use crate::grid::settled;
@@ -52,9 +54,6 @@ const CHORD_AIM: f64 = 0.985;
 /// shorter one will.
 const UNBOUNDED_ROUNDS: usize = 4;
 
-/// A kink of the tangent of more than this (radians) is a corner, and a corner is a vertex.
-const CORNER: f64 = 1e-3;
-
 impl EdgeSamples {
     /// Samples an edge with at least `least` chords.
     pub fn new(
@@ -77,7 +76,11 @@ impl EdgeSamples {
         samples.t.push(edge.range.start);
         let mut stops = poles_on_the_way(curve, edge.range, uses);
         stops.extend(crease_crossings(curve, edge.range, uses));
-        for smooth in smooth_ranges(curve, edge.range, &stops) {
+        let mut pieces = smooth_pieces(curve, edge.range, &stops);
+        if method == EdgeMethod::Default {
+            pieces = passed_over(pieces, curve, uses, [limits, of_faces]);
+        }
+        for smooth in pieces.into_iter().map(|piece| piece.range) {
             let tolerance = limits.tolerance;
             let given = method.parameters(curve, edge.range, smooth, uses, tolerance, &mut samples.trace);
             match given {
@@ -224,28 +227,6 @@ fn poles_on_the_way(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
         }
     }
     found
-}
-
-/// Cuts a range at the corners of the curve and at `stops`.
-fn smooth_ranges(curve: &Curve, range: Range, stops: &[f64]) -> Vec<Range> {
-    let step = 1e-7 * range.length();
-    let mut cuts = curve.breaks(range);
-    cuts.retain(|&t| curve.jet(t - step).d1.angle_between(curve.jet(t + step).d1) > CORNER);
-    // A corner is mostly on a crease, too: there it is known best.
-    let known = |t: f64| cuts.iter().any(|c| (c - t).abs() <= step);
-    let new: Vec<f64> = stops.iter().copied().filter(|&t| !known(t)).collect();
-    cuts.extend(new);
-    cuts.sort_by(f64::total_cmp);
-    let mut start = range.start;
-    let mut ranges = Vec::with_capacity(1);
-    for t in cuts {
-        if t > start + step && t < range.end - step {
-            ranges.push(Range::new(start, t));
-            start = t;
-        }
-    }
-    ranges.push(Range::new(start, range.end));
-    ranges
 }
 
 /// Samples of an edge between which it crosses a crease at most once.
