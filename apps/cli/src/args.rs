@@ -1,5 +1,6 @@
 //! The command line: what can be asked, with its units and defaults.
 
+use crate::render_args::RenderArgs;
 use chordal::{
     Bound, EdgeMethod, Format, JobOptions, ReadOptions, Sew, Strategy, Tolerance, Unit, UpAxis, Winding,
 };
@@ -338,132 +339,11 @@ pub struct ConvertArgs {
     pub unsewn: bool,
 }
 
-#[derive(Debug, Args)]
-#[cfg_attr(not(feature = "render"), allow(dead_code, reason = "read by builds that draw"))]
-pub struct RenderArgs {
-    /// A CAD file.
-    #[arg(value_name = "IN")]
-    pub input: PathBuf,
-    /// The picture to write.
-    #[arg(short, long, value_name = "OUT.png")]
-    pub output: PathBuf,
-    /// Width and height in pixels.
-    #[arg(long, value_name = "WxH", default_value = "1280x960", value_parser = parse_size)]
-    pub size: SizeArg,
-    /// iso, top, bottom, front, back, left, right, or the places of the eye and of what it looks at, x,y,z,x,y,z in mm.
-    #[arg(long, value_name = "VIEW", default_value = "iso", allow_hyphen_values = true)]
-    pub camera: String,
-    #[arg(long, value_enum, default_value = "orthographic")]
-    pub projection: ProjectionArg,
-    /// Move a camera with a place of its own until it sees the whole model; the named ones always do.
-    #[arg(long)]
-    pub fit: bool,
-    /// How much nearer than what fits, about the middle of the picture.
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_zoom)]
-    pub zoom: ZoomArg,
-    #[arg(long, value_enum, default_value = "mesh")]
-    pub mode: ModeArg,
-    /// With --mode nurbs: how faces are trimmed.
-    #[arg(long, value_enum, default_value = "exact")]
-    pub trim: TrimArg,
-    #[arg(long, value_enum, default_value = "shaded")]
-    pub style: StyleArg,
-    /// Leave out the lines of the style.
-    #[arg(long)]
-    pub no_lines: bool,
-    /// light, dark, transparent, or a colour #rrggbb.
-    #[arg(long, value_name = "COLOUR", default_value = "light")]
-    pub background: String,
-    /// Cut away what lies where x·X + y·Y + z·Z > d, mm: X,Y,Z,d.
-    #[arg(long, value_name = "X,Y,Z,d", allow_hyphen_values = true)]
-    pub section: Option<String>,
-    /// Largest distance between the triangles drawn and the exact surfaces: a length, or a percentage of the model's diagonal.
-    #[arg(long, value_name = "LENGTH|%", default_value = "0.03%", allow_hyphen_values = true)]
-    pub tolerance: Tolerance,
-    /// Which device draws.
-    #[arg(long, value_enum, default_value = "best")]
-    pub device: DeviceArg,
-    /// Say nothing but what went wrong.
-    #[arg(short, long)]
-    pub quiet: bool,
-}
-
-/// Pixels.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(not(feature = "render"), allow(dead_code, reason = "read by builds that draw"))]
-pub struct SizeArg(pub [u32; 2]);
-
-/// Above 0.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(not(feature = "render"), allow(dead_code, reason = "read by builds that draw"))]
-pub struct ZoomArg(pub f64);
-
-fn parse_size(text: &str) -> Result<SizeArg, String> {
-    let numbers = text.split_once(['x', '×']).map(|(w, h)| (w.trim().parse(), h.trim().parse()));
-    match numbers {
-        Some((Ok(w @ 1..=32_768), Ok(h @ 1..=32_768))) => Ok(SizeArg([w, h])),
-        _ => Err("not a width and a height such as 1280x960".into()),
-    }
-}
-
-fn parse_zoom(text: &str) -> Result<ZoomArg, String> {
-    match text.trim().parse::<f64>() {
-        Ok(zoom) if zoom > 0.0 && zoom.is_finite() => Ok(ZoomArg(zoom)),
-        _ => Err("not a number above 0".into()),
-    }
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum TrimArg {
-    /// Every sample of a pixel against the curves, sharp at any zoom.
-    Exact,
-    /// By a texture in which the loops are counted even and odd.
-    Texture,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum ProjectionArg {
-    Orthographic,
-    /// 30° from the lower to the upper border.
-    Perspective,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum ModeArg {
-    /// The triangles of the mesh.
-    Mesh,
-    /// The exact surfaces, evaluated for the view to half a pixel and trimmed at every sample (shaded and edges).
-    Nurbs,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum StyleArg {
-    /// Lit faces in the model's colours, and its edges.
-    Shaded,
-    /// The edges alone, those behind faces hidden.
-    Edges,
-    /// The edges of all triangles.
-    Wireframe,
-    /// Mean curvature: red where the outside is convex, blue where it is hollow.
-    Curvature,
-    /// Distance between the mesh and the exact surfaces.
-    Error,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum EvaluateArg {
     Cpu,
     /// Hardware if there is any, else a software device such as Mesa's lavapipe.
     Gpu,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum DeviceArg {
-    /// Hardware if there is any, else software.
-    Best,
-    Hardware,
-    /// Mesa's lavapipe or another program on the CPU.
-    Software,
 }
 
 #[derive(Debug, Args)]

@@ -13,6 +13,7 @@ mod mesh;
 mod outputs;
 mod progress;
 mod render;
+mod render_args;
 mod sew;
 
 use args::{Cli, Command};

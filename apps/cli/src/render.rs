@@ -1,7 +1,7 @@
 //! `chordal render`: a picture of a model.
 
-use crate::args::RenderArgs;
 use crate::exit::{Exit, say};
+use crate::render_args::RenderArgs;
 
 /// Says how to get a build that draws.
 #[cfg(not(feature = "render"))]
@@ -20,9 +20,9 @@ pub fn run(args: &RenderArgs) -> Exit {
 #[cfg(feature = "render")]
 mod drawing {
     use super::{Exit, RenderArgs, say};
-    use crate::args::{DeviceArg, ModeArg, ProjectionArg, StyleArg, TrimArg};
+    use crate::render_args::{DeviceArg, ModeArg, NormalsArg, ProjectionArg, StyleArg, TrimArg};
     use chordal::gpu::{
-        Background, DeviceChoice, Projection, RenderOptions, SectionPlane, Style, Trim, View,
+        Background, DeviceChoice, Normals, Projection, RenderOptions, SectionPlane, Style, Trim, View,
     };
     use chordal::nurbs::DVec3;
     use chordal::{RenderJob, RenderMode, Rendered};
@@ -78,6 +78,10 @@ mod drawing {
             .with_trim(match args.trim {
                 TrimArg::Exact => Trim::Exact,
                 TrimArg::Texture => Trim::Texture,
+            })
+            .with_normals(match args.normals {
+                NormalsArg::Exact => Normals::Exact,
+                NormalsArg::Interpolated => Normals::Interpolated,
             });
         Ok(RenderJob {
             input: args.input.clone(),

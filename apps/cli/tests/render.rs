@@ -21,7 +21,11 @@ fn a_build_without_pictures_says_how_to_get_one_with() {
 fn a_picture_is_written_and_the_adapter_named() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out.png");
-    let ran = run("render {} -o {} --size 200x100 --camera top", &[&model("bracket"), &out]).exits(&[0]);
+    let ran = run(
+        "render {} -o {} --size 200x100 --camera top --mode nurbs --normals interpolated",
+        &[&model("bracket"), &out],
+    )
+    .exits(&[0]);
     assert!(ran.stderr.contains("drawn by"), "{}", ran.stderr);
     assert!(std::fs::read(&out).unwrap().starts_with(b"\x89PNG"));
 }
@@ -29,11 +33,17 @@ fn a_picture_is_written_and_the_adapter_named() {
 #[cfg(feature = "render")]
 #[test]
 fn bad_options_are_one_sentence() {
-    for options in ["--camera corner", "--background blue", "--section 0,0,0,1"] {
+    for options in
+        ["--camera corner", "--background blue", "--section 0,0,0,1", "--zoom -1", "--normals none"]
+    {
         let line = format!("render {{}} -o {{}} {options}");
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out.png");
         run(&line, &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
         assert!(!out.exists());
     }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.jpg");
+    run("render {} -o {}", &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
+    assert!(!out.exists());
 }

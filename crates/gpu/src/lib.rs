@@ -19,8 +19,8 @@ mod surfaces;
 
 pub use device::{DeviceChoice, Gpu};
 pub use draw::{
-    Background, Camera, ExactRenderer, ExactScene, FrameCounts, Legend, PIXEL_ERROR, Picture, Placed,
-    Projection, RenderOptions, Renderer, Scenery, SectionPlane, Shape, Style, Trim, Vertex, View,
+    Background, Camera, ExactRenderer, ExactScene, FrameCounts, Legend, Normals, PIXEL_ERROR, Picture,
+    Placed, Projection, RenderOptions, Renderer, Scenery, SectionPlane, Shape, Style, Trim, Vertex, View,
     mesh_scenery, scene_outline,
 };
 pub use error::GpuError;
@@ -30,4 +30,4 @@ pub use host::{HIGHEST_DEGREE, HostPeaks, HostSurface, host_peaks};
 pub use real::Real;
 pub use samples::{Request, Samples, sorted_by_span};
 pub use shaders::{SHADERS, Shader};
-pub use surfaces::{LocalFrame, SurfaceEntry, SurfaceSet};
+pub use surfaces::{Edit, LocalFrame, SurfaceEntry, SurfaceSet};

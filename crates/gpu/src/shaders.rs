@@ -52,9 +52,12 @@ pub(crate) const BASIS_UNPACKED: Shader = kernel!(
 );
 pub(crate) const BASIS_PACKED: Shader =
     kernel!(&[(2, true), (4, true), (7, false)], "basis_packed", ["common", "basis_pass", "basis_packed"]);
-pub(crate) const TENSOR: Shader = kernel!(POINT_BINDINGS, "tensor", ["common", "samples", "sums", "tensor"]);
-pub(crate) const DIRECT: Shader = kernel!(POINT_BINDINGS, "direct", ["common", "samples", "sums", "direct"]);
-pub(crate) const BERNSTEIN: Shader = kernel!(POINT_BINDINGS, "bernstein", ["common", "samples", "bernstein"]);
+pub(crate) const TENSOR: Shader =
+    kernel!(POINT_BINDINGS, "tensor", ["common", "normal", "samples", "sums", "tensor"]);
+pub(crate) const DIRECT: Shader =
+    kernel!(POINT_BINDINGS, "direct", ["common", "normal", "samples", "sums", "direct"]);
+pub(crate) const BERNSTEIN: Shader =
+    kernel!(POINT_BINDINGS, "bernstein", ["common", "normal", "samples", "bezier", "bernstein"]);
 pub(crate) const FIND_SPANS: Shader = kernel!(
     &[(0, true), (1, true), (2, false), (5, true), (7, false)],
     "find_spans",
@@ -67,6 +70,9 @@ pub(crate) const EXACT: Shader = Shader {
     files: &[
         include_str!("draw/view.wgsl"),
         include_str!("exact/trim.wgsl"),
+        file!("normal"),
+        file!("bezier"),
+        include_str!("draw/exact_normal.wgsl"),
         include_str!("draw/exact.wgsl"),
     ],
     bindings: &[],
@@ -98,11 +104,9 @@ pub const SHADERS: &[Shader] = &[
 impl Shader {
     /// The whole source in the precision `R`.
     pub fn source<R: Real>(&self) -> String {
-        if !self.generic {
-            return self.files.concat();
-        }
         let suffix = if R::WGSL == "f64" { "lf" } else { "f" };
         let degenerate = format!("const DEGENERATE: real = {:e}{suffix};\n", R::DEGENERATE);
-        format!("alias real = {};\n{degenerate}{}", R::WGSL, self.files.concat())
+        let vectors = "alias real3 = vec3<real>;\nalias real4 = vec4<real>;\n";
+        format!("alias real = {};\n{vectors}{degenerate}{}", R::WGSL, self.files.concat())
     }
 }

@@ -12,6 +12,7 @@
 use crate::layout::{Direction, Span};
 use crate::{GpuError, Real};
 use chordal_nurbs::{BezierPatch, DVec2, DVec3, NurbsCurve3, NurbsSurface, UvBox};
+use std::ops::{Range, RangeInclusive};
 
 /// Where the local coordinates of a surface lie: model = `middle` + `size` · local.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +56,28 @@ impl DirectionEntry {
         let (start, end) = (self.breaks[cell], self.breaks[cell + 1]);
         (self.span + cell as u32, ((t - start) / (end - start)).clamp(0.0, 1.0))
     }
+
+    /// Its window entries and its spans in the set.
+    pub fn windows(&self) -> Range<usize> {
+        self.window as usize..(self.window + self.windows) as usize
+    }
+    pub fn spans(&self) -> Range<usize> {
+        self.span as usize..self.span as usize + self.breaks.len() - 1
+    }
+
+    /// The spans between two parameters, by their numbers in this direction.
+    pub fn cells_between(&self, low: f64, high: f64) -> RangeInclusive<usize> {
+        let cell = |t: f64| (self.locate(t).0 - self.span) as usize;
+        cell(low)..=cell(high)
+    }
+}
+
+/// What an edit of a surface changed, and so what has to be uploaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edit {
+    /// Control points or weights.
+    pub points: bool,
+    pub knots: bool,
 }
 
 /// Any number of surfaces and curves of any degree.
@@ -202,7 +225,7 @@ impl<R: Real> SurfaceSet<R> {
     ///
     /// # Errors
     /// [`GpuError::NoSuchSurface`], or [`GpuError::OtherShape`] where a degree, a count or the number of spans differs.
-    pub fn replace(&mut self, index: usize, surface: &NurbsSurface) -> Result<(), GpuError> {
+    pub fn replace(&mut self, index: usize, surface: &NurbsSurface) -> Result<Edit, GpuError> {
         let old = self.entries.get(index).ok_or(GpuError::NoSuchSurface(index))?.clone();
         let spans = [surface.breaks_u().len(), surface.breaks_v().len()];
         let same = old.degree == surface.degree()
@@ -212,15 +235,14 @@ impl<R: Real> SurfaceSet<R> {
         if !same {
             return Err(GpuError::OtherShape { index });
         }
+        let (net, knots) = (self.net[old.net_range()].to_vec(), self.knots_of(&old));
         let directions = [
             self.direction(old.degree[0], surface.knots_u(), Some(&old.directions[0])),
             self.direction(old.degree[1], surface.knots_v(), Some(&old.directions[1])),
         ];
         let frame = local_frame(surface.points());
         let (largest, weight_ratio) = weight_range(surface.weights());
-        let at = old.net as usize;
-        let slots = &mut self.net[at..at + old.points as usize];
-        slots
+        self.net[old.net_range()]
             .iter_mut()
             .zip(homogeneous::<R>((surface.points(), surface.weights()), frame, largest))
             .for_each(|(slot, p)| *slot = p);
@@ -234,8 +256,21 @@ impl<R: Real> SurfaceSet<R> {
                 .for_each(|(slot, p)| *slot = p);
             at += size;
         }
-        self.entries[index] = SurfaceEntry { frame, weight_ratio, directions, ..old };
-        Ok(())
+        let entry = SurfaceEntry { frame, weight_ratio, directions, ..old };
+        let same = (entry.frame, entry.weight_ratio)
+            == (self.entries[index].frame, self.entries[index].weight_ratio);
+        let edit = Edit {
+            points: !same || net != self.net[entry.net_range()],
+            knots: knots != self.knots_of(&entry),
+        };
+        self.entries[index] = entry;
+        Ok(edit)
+    }
+
+    /// All that the device knows of the knots of a surface.
+    fn knots_of(&self, entry: &SurfaceEntry) -> Vec<(Vec<R>, Vec<Span>)> {
+        let of = |d: &DirectionEntry| (self.windows[d.windows()].to_vec(), self.spans[d.spans()].to_vec());
+        entry.directions.iter().map(of).collect()
     }
 
     /// The knots of all directions for the search on the device; direction `2 i + axis` is that of surface i.
@@ -255,6 +290,16 @@ impl<R: Real> SurfaceSet<R> {
 }
 
 impl SurfaceEntry {
+    /// Its control points in the set.
+    pub(crate) fn net_range(&self) -> Range<usize> {
+        self.net as usize..(self.net + self.points) as usize
+    }
+
+    /// Its Bézier control points in the set.
+    pub(crate) fn bezier_range(&self) -> Range<usize> {
+        self.bezier as usize..(self.bezier + self.beziers) as usize
+    }
+
     /// How far a point that a kernel finds in precision `R` may lie from the exact one **at the parameters within the span that the
     /// kernel was given**, plus what rounding those costs; in the model's units. Positive weights.
     ///

@@ -3,8 +3,8 @@
 mod common;
 
 use chordal_gpu::{
-    DeviceChoice, Evaluator, Gpu, GpuError, OnDevice, Real, Request, Samples, Search, SurfaceSet, Variant,
-    Wanted, evaluate_twin, sorted_by_span,
+    DeviceChoice, Edit, Evaluator, Gpu, GpuError, OnDevice, Real, Request, Samples, Search, SurfaceSet,
+    Variant, Wanted, evaluate_twin, sorted_by_span,
 };
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, NurbsSurface, Range};
 use common::{Random, gpu};
@@ -36,7 +36,7 @@ fn both<R: Real>(
 fn modes() -> Vec<(Variant, Wanted, Search)> {
     let mut modes = Vec::new();
     for variant in Variant::ALL {
-        for wanted in [Wanted::Points, Wanted::First, Wanted::Second] {
+        for wanted in [Wanted::Points, Wanted::Normals, Wanted::First, Wanted::Second] {
             modes.push((variant, wanted, Search::Host));
         }
     }
@@ -247,9 +247,29 @@ fn an_edit_uploads_only_what_changed() {
         let knots_u = s.knots_u().iter().map(|k| 2.0 * k + 1.0).collect();
         let weights = s.weights().map(<[f64]>::to_vec);
         surfaces[17] = NurbsSurface::new([3, 3], knots_u, s.knots_v().to_vec(), moved, weights).unwrap();
-        set.replace(17, &surfaces[17]).unwrap();
-        let sent = on_device.update(gpu(), &set, 17).unwrap();
+        let edit = set.replace(17, &surfaces[17]).unwrap();
+        assert_eq!(edit, Edit { points: true, knots: true });
+        let sent = on_device.update(gpu(), &set, 17, edit).unwrap();
         assert!(sent * 25 < on_device.bytes(), "{sent} of {}", on_device.bytes());
+        // Nothing, control points alone, knots alone.
+        let s = &surfaces[17];
+        let other = |points: Vec<DVec3>, stretch: f64| {
+            let knots = s.knots_v().iter().map(|k| stretch * k).collect();
+            let weights = s.weights().map(<[f64]>::to_vec);
+            NurbsSurface::new([3, 3], s.knots_u().to_vec(), knots, points, weights).unwrap()
+        };
+        let mut part = |surface: &NurbsSurface| {
+            let edit = set.replace(17, surface).unwrap();
+            (edit, on_device.update(gpu(), &set, 17, edit).unwrap())
+        };
+        let raised = other(s.points().iter().map(|p| *p + DVec3::Z * p.x).collect(), 1.0);
+        assert_eq!(part(s), (Edit { points: false, knots: false }, 0));
+        let (edit, of_points) = part(&raised);
+        assert!(edit == Edit { points: true, knots: false } && of_points < sent, "{of_points} of {sent}");
+        let back = part(s);
+        assert_eq!(back, (edit, of_points));
+        let (edit, of_knots) = part(&other(s.points().to_vec(), 3.0));
+        assert!(edit == Edit { points: false, knots: true } && of_knots < sent, "{of_knots} of {sent}");
         evaluator.run(gpu(), &evaluation).unwrap();
         let found = evaluation.read(gpu()).unwrap().values;
         let fresh = evaluator.evaluate(gpu(), &set, &samples, Wanted::First).unwrap().values;
@@ -375,7 +395,7 @@ fn a_lost_device_is_an_error() {
     };
     lost("reading", evaluation.read(&doomed).err());
     lost("running", evaluator.run(&doomed, &evaluation).err());
-    lost("an edit", on_device.update(&doomed, &set, 0).err());
+    lost("an edit", on_device.update(&doomed, &set, 0, Edit { points: true, knots: true }).err());
     lost("uploading", OnDevice::upload(&doomed, &set).err());
     lost("all", evaluator.evaluate(&doomed, &set, &samples, Wanted::Points).err());
     lost("compiling", Evaluator::<f32>::new(&doomed, Variant::Direct, Search::Host).err());

@@ -199,6 +199,33 @@ fn moving_surfaces_send_and_evaluate_themselves_alone() {
     }
 }
 
+/// Knots that move move the samples with them: the picture is that of a scene that had them from the start.
+#[test]
+fn moved_knots_move_the_samples() {
+    let outcome = meshed("iv/duck.iv", 0.1);
+    let options = small().with_lines(false);
+    let mut stage = Stage::new(gpu(), &outcome);
+    let (still, _) = stage.frame(&options);
+    let face = |f: &chordal::gpu::ExactFace| f.surface.breaks_u().len() > 2;
+    let index = stage.scene.exact().parts[0].faces.iter().position(face).expect("inner knots");
+    let s = stage.scene.exact().parts[0].faces[index].surface.clone();
+    let domain = s.domain();
+    let bent = |t: &f64| {
+        let x = (t - domain.min.x) / domain.size().x;
+        domain.min.x + domain.size().x * (x + 0.25 * (x * std::f64::consts::PI).sin())
+    };
+    let knots = s.knots_u().iter().map(bent).collect();
+    let weights = s.weights().map(<[f64]>::to_vec);
+    let surface =
+        NurbsSurface::new(s.degree(), knots, s.knots_v().to_vec(), s.points().to_vec(), weights).unwrap();
+    stage.scene.set_surface(gpu(), 0, index, &surface).unwrap();
+    let (moved, _) = stage.frame(&options);
+    assert!(moved.difference(&still, 8) > 0.005, "{}", moved.difference(&still, 8));
+    let mut fresh = Stage::new(gpu(), &outcome);
+    fresh.scene.set_surface(gpu(), 0, index, &surface).unwrap();
+    assert!(moved.difference(&fresh.frame(&options).0, 8) < 0.0005);
+}
+
 /// Far copies of a part are sampled by themselves, more coarsely.
 #[test]
 fn far_copies_take_fewer_points() {

@@ -1,4 +1,5 @@
-// Exact faces: grids of points that a kernel has left in a buffer, drawn from there and trimmed at every sample.
+// Exact faces: grids of points that a kernel has left in a buffer, drawn from there, trimmed at every sample and lit by the exact
+// normal of every pixel.
 
 struct Face {
     offset: vec3<f32>,   // local coordinates to the part's: offset + size * local
@@ -17,11 +18,19 @@ struct Face {
     plane: u32,              // 4 layer + channel
     width: u32,              // points along u
     borders: u32,            // pieces of its border
+    net: u32,                // first Bézier control point of the spans that it lies in
+    degrees: u32,            // along u, and 256 times along v; 0: there are no nets, normals are interpolated
+    cells_v: u32,            // spans of the whole surface along v
+    spans_u: u32,            // the records of the spans that it lies in
+    spans_v: u32,
+    count_u: u32,
+    count_v: u32,
 }
 
 @group(0) @binding(2) var<storage, read> faces: array<Face>;
 @group(0) @binding(3) var<storage, read> points: array<f32>;
-@group(0) @binding(4) var<storage, read> places: array<f32>;
+// Of every column and row of a grid the place in the face's square, by native and by NURBS parameters; and the spans of faces.
+@group(0) @binding(4) var<storage, read> places: array<vec2<f32>>;
 @group(0) @binding(7) var trims: texture_2d_array<f32>;
 @group(0) @binding(8) var trim_sampler: sampler;
 
@@ -59,6 +68,9 @@ struct ExactOut {
     @location(3) @interpolate(flat) color: vec3<f32>,
     @location(4) @interpolate(flat) trim: vec2<u32>,
     @location(5) @interpolate(flat) face: u32,
+    @location(6) @interpolate(flat) placement: u32,
+    // The place by NURBS parameters; within the triangle also where the middle of the pixel is not.
+    @location(7) @interpolate(perspective, centroid) spot: vec2<f32>,
 }
 
 fn color_of(face: Face, placement: Placement) -> vec3<f32> {
@@ -66,12 +78,12 @@ fn color_of(face: Face, placement: Placement) -> vec3<f32> {
 }
 
 fn point_of(face: Face, number: u32) -> vec3<f32> {
-    let at = 12u * number;
+    let at = 6u * number;
     return face.offset + face.size * vec3<f32>(points[at], points[at + 1u], points[at + 2u]);
 }
 
 fn normal_of(face: Face, number: u32) -> vec3<f32> {
-    let at = 12u * number + 9u;
+    let at = 6u * number + 3u;
     return face.turn * vec3<f32>(points[at], points[at + 1u], points[at + 2u]);
 }
 
@@ -89,10 +101,14 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     out.clip = view.projection * p;
     out.p = p.xyz;
     out.normal = placement.normal * normal_of(face, number);
-    out.place = vec2<f32>(places[face.row_u + i], places[face.row_v + j]);
+    let along_u = places[face.row_u + i];
+    let along_v = places[face.row_v + j];
+    out.place = vec2<f32>(along_u.x, along_v.x);
+    out.spot = vec2<f32>(along_u.y, along_v.y);
     out.color = color_of(face, placement);
     out.trim = vec2<u32>(face.lists, face.bands);
     out.face = block.face;
+    out.placement = block.placement;
     return out;
 }
 
@@ -116,6 +132,17 @@ fn fragment(in: ExactOut) -> Covered {
     return covered(in, bits.x | bits.y | bits.z | bits.w);
 }
 
+// Towards the outside, in view space.
+fn normal_in(in: ExactOut) -> vec3<f32> {
+    if view.depth.y > 0.0 && faces[in.face].degrees > 0u {
+        let normal = exact_normal(in.face, in.spot);
+        if any(normal != vec3<f32>(0.0)) {
+            return placements[in.placement].normal * (faces[in.face].turn * normal);
+        }
+    }
+    return in.normal;
+}
+
 fn covered(in: ExactOut, samples: u32) -> Covered {
     if is_cut(in.p) || samples == 0u {
         discard;
@@ -123,7 +150,19 @@ fn covered(in: ExactOut, samples: u32) -> Covered {
     if view.fill.a > 0.0 {
         return Covered(vec4<f32>(view.fill.rgb, 1.0), samples);
     }
-    return Covered(vec4<f32>(lit(in.color, in.normal, in.p), 1.0), samples);
+    return Covered(vec4<f32>(lit(in.color, normal_in(in), in.p), 1.0), samples);
+}
+
+// What a fragment knows of its place and the normal it is lit by, as numbers: for the tests, which compare them with double
+// precision.
+struct Probed {
+    @location(0) place: vec4<f32>,
+    @location(1) normal: vec4<f32>,
+}
+
+@fragment
+fn fragment_probe(in: ExactOut) -> Probed {
+    return Probed(vec4<f32>(in.spot, f32(in.face), 1.0), vec4<f32>(normal_in(in), 1.0));
 }
 
 // By the trim texture. No answer is interpolated with a neighbour's rectangle.

@@ -12,13 +12,13 @@ use super::exact::ExactRenderer;
 use super::generation::{Generation, Member, most_points};
 use super::mesh_groups::Triangles;
 use super::mesh_shapes::{scene_outline, scenery_of, shape_boxes};
-use super::renderer::{Renderer, Stage, draw, placement_data};
+use super::renderer::{Renderer, Stage, draw};
 use super::residents::{Home, Resident, settle};
 use super::target::Target;
-use super::view_data::view_data;
+use super::view_data::{Standing, standing, view_data};
 use super::view_lines::ViewLines;
 use super::visible::{Frustum, Shown, Visible};
-use super::{Background, Camera, Picture, RenderOptions, Scenery, Style, Trim};
+use super::{Background, Picture, RenderOptions, Scenery, Style, Trim};
 use crate::{ExactModel, Gpu, GpuError};
 use chordal_brep::Model;
 use chordal_mesh::Scene;
@@ -53,6 +53,8 @@ pub struct ExactScene<'a> {
     exact: ExactModel,
     style: Style,
     scenery: Scenery,
+    /// Per placement of the scenery.
+    standing: Vec<Standing>,
     boxes: Vec<[DVec3; 2]>,
     /// Parts of which some face may show its back alone.
     closed: Vec<bool>,
@@ -70,6 +72,7 @@ pub struct ExactScene<'a> {
     /// What is drawn of every generation.
     lists: BTreeMap<u64, List>,
     calm: Option<Calm>,
+    seen: Option<Seen>,
     target: Option<Target>,
 }
 
@@ -94,7 +97,15 @@ struct Sampled {
 type Key = ((usize, i32), usize);
 
 /// A face that is drawn, and the placements it is seen in.
-type Seen = (Key, Range<u32>);
+type DrawnFace = (Key, Range<u32>);
+
+/// What options showed: a frame with the same needs neither the placements composed with the camera again nor their bytes sent.
+#[derive(Debug)]
+struct Seen {
+    options: RenderOptions,
+    visible: Visible,
+    frustum: Frustum,
+}
 
 /// A face to be evaluated.
 type Wish = (Key, Choice);
@@ -116,6 +127,7 @@ impl<'a> ExactScene<'a> {
         gpu.watched("uploading the model", || {
             let (residents, homes) = settle(gpu, &exact, gpu.binding_limit())?;
             Ok(Self {
+                standing: standing(&scenery),
                 boxes: shape_boxes(scene),
                 outline: scene_outline(scene),
                 stage: Stage::new(gpu, scenery.placed.len())?,
@@ -128,6 +140,7 @@ impl<'a> ExactScene<'a> {
                 sampled: BTreeMap::new(),
                 lists: BTreeMap::new(),
                 calm: None,
+                seen: None,
                 target: None,
                 scene,
                 model,
@@ -169,9 +182,9 @@ impl<'a> ExactScene<'a> {
             .and_then(|of_part| of_part.get(face))
             .ok_or(GpuError::NoSuchSurface(face))?;
         let resident = &mut self.residents[home.resident];
-        resident.set.replace(home.surface, surface)?;
-        let sent = resident.on_device.update(gpu, &resident.set, home.surface)?;
-        self.calm = None;
+        let edit = resident.set.replace(home.surface, surface)?;
+        let sent = resident.on_device.update(gpu, &resident.set, home.surface, edit)?;
+        (self.calm, self.seen) = (None, None);
         let of_part = &mut self.exact.parts[part];
         of_part.faces[face].replace_surface(surface);
         // A shell that moves may open.
@@ -182,6 +195,10 @@ impl<'a> ExactScene<'a> {
             self.boxes[part] = [l.min(low), h.max(high)];
         }
         for (_, faces) in self.sampled.iter_mut().filter(|(key, _)| key.0 == part) {
+            // Samples know their place by its span.
+            if edit.knots {
+                forget(&mut self.generations, faces[face].take());
+            }
             faces[face].iter_mut().for_each(|s| s.stale = true);
         }
         Ok(sent)
@@ -196,24 +213,25 @@ impl<'a> ExactScene<'a> {
         if self.target.as_ref().is_none_or(|t| t.size != options.size) {
             self.target = Some(Target::new(gpu, options.size)?);
         }
-        let camera = options.camera(&self.outline);
         gpu.watched("drawing", || {
-            let (visible, frustum) = self.see(gpu, &camera, options);
+            let kept = self.seen.take().filter(|seen| seen.options == *options);
+            let seen = kept.unwrap_or_else(|| self.see(gpu, options));
+            let Seen { visible, frustum, .. } = &seen;
             let backs = options.reject && options.section.is_none();
             let calm = self.calm.as_ref().filter(|_| self.trim == options.trim);
-            let mut counts = match calm.and_then(|c| c.counts(&visible, backs, &self.closed)) {
+            let mut counts = match calm.and_then(|c| c.counts(visible, backs, &self.closed)) {
                 Some(counts) => counts,
                 None => {
-                    let (counts, keys) = self.evaluate(gpu, exact, &visible, &frustum, options)?;
+                    let (counts, keys) = self.evaluate(gpu, exact, visible, frustum, options)?;
                     self.list_blocks(gpu, exact, &keys)?;
-                    self.calm = self.calm(&visible, &counts);
+                    self.calm = self.calm(visible, &counts);
                     counts
                 }
             };
             counts.placements_outside = self.scenery.placed.len() - visible.order.len();
             if options.lines {
                 let parts = (self.scene, self.model);
-                self.lines.refine(gpu, renderer, parts, &mut self.scenery, &visible, self.stage.buffers())?;
+                self.lines.refine(gpu, renderer, parts, &mut self.scenery, visible, self.stage.buffers())?;
             }
             let target = self.target.as_ref().expect("made above");
             draw(gpu, target, options.background, |pass| {
@@ -230,6 +248,7 @@ impl<'a> ExactScene<'a> {
                     renderer.draw_lines(pass, self.lines.get(), &visible.placed);
                 }
             });
+            self.seen = Some(seen);
             Ok(counts)
         })
     }
@@ -252,14 +271,15 @@ impl<'a> ExactScene<'a> {
         }
     }
 
-    /// What the camera may show; the view and its placements go to the device.
-    fn see(&self, gpu: &Gpu, camera: &Camera, options: &RenderOptions) -> (Visible, Frustum) {
-        let frustum = if options.reject { Frustum::new(camera, options.size) } else { Frustum::all(camera) };
+    /// What the options show; the view and its placements go to the device.
+    fn see(&self, gpu: &Gpu, options: &RenderOptions) -> Seen {
+        let camera = options.camera(&self.outline);
+        let frustum =
+            if options.reject { Frustum::new(&camera, options.size) } else { Frustum::all(&camera) };
         let visible = Visible::new(&self.scenery, &self.boxes, &frustum);
-        let placed = visible.order.iter().map(|&k| &self.scenery.placed[k]);
-        let data: Vec<_> = placed.map(|p| placement_data(&self.scenery, camera, p)).collect();
-        self.stage.set(gpu, &view_data(camera, options), &data);
-        (visible, frustum)
+        let data: Vec<_> = visible.order.iter().map(|&k| self.standing[k].in_view(&camera)).collect();
+        self.stage.set(gpu, &view_data(&camera, options), &data);
+        Seen { options: *options, visible, frustum }
     }
 
     /// Rejects, chooses, and evaluates what has no samples that serve; the faces to draw and where.
@@ -270,7 +290,7 @@ impl<'a> ExactScene<'a> {
         visible: &Visible,
         frustum: &Frustum,
         options: &RenderOptions,
-    ) -> Result<(FrameCounts, Vec<Seen>), GpuError> {
+    ) -> Result<(FrameCounts, Vec<DrawnFace>), GpuError> {
         if self.trim != options.trim {
             (self.trim, self.generations, self.sampled) = (options.trim, BTreeMap::new(), BTreeMap::new());
             self.lists.clear();
@@ -451,7 +471,12 @@ impl<'a> ExactScene<'a> {
     }
 
     /// What is drawn of every generation; lists that were made for the same faces before are kept.
-    fn list_blocks(&mut self, gpu: &Gpu, renderer: &ExactRenderer, keys: &[Seen]) -> Result<(), GpuError> {
+    fn list_blocks(
+        &mut self,
+        gpu: &Gpu,
+        renderer: &ExactRenderer,
+        keys: &[DrawnFace],
+    ) -> Result<(), GpuError> {
         let mut drawn: BTreeMap<u64, Vec<(usize, Range<u32>)>> = BTreeMap::new();
         for ((at, face), placed) in keys {
             if let Some(sampled) = self.sampled[at][*face] {
@@ -484,3 +509,7 @@ fn forget(generations: &mut BTreeMap<u64, Generation>, old: Option<Sampled>) {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "probe_tests.rs"]
+mod probe_tests;

@@ -12,7 +12,7 @@ use super::trim_texture::{TrimTexture, Trimmed};
 use super::{Trim, linear};
 use crate::evaluate::storage;
 use crate::exact::{ExactFace, grid};
-use crate::{Evaluation, Gpu, GpuError, Request, Samples, Wanted};
+use crate::{Evaluation, Gpu, GpuError, Request, Samples, SurfaceEntry, Wanted};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -21,7 +21,7 @@ use wgpu::{BindGroup, BindingResource, Buffer, RenderPass};
 /// As `Face` in `exact.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct FaceData {
+pub(crate) struct FaceData {
     offset: [f32; 3],
     size: f32,
     color: [f32; 4],
@@ -31,14 +31,18 @@ struct FaceData {
     row_v: u32,
     lists: u32,
     bands: u32,
-    turn: f32,
+    pub turn: f32,
     border: u32,
     rectangle: [f32; 4],
     half_texel: [f32; 2],
     plane: u32,
     width: u32,
     borders: u32,
-    spare: [u32; 3],
+    pub net: u32,
+    pub degrees: u32,
+    pub cells_v: u32,
+    pub spans: [u32; 2],
+    pub counts: [u32; 2],
 }
 
 /// A face to be evaluated, and where.
@@ -75,7 +79,7 @@ impl<'a> Member<'a> {
 
 /// Points that fit into one binding; a generation has no more, so that no grid is cut.
 pub(crate) fn most_points(gpu: &Gpu) -> usize {
-    (gpu.binding_limit() / (Wanted::First.stride() * size_of::<f32>()) as u64) as usize
+    (gpu.binding_limit() / (Wanted::Normals.stride() * size_of::<f32>()) as u64) as usize
 }
 
 /// The points of some faces of one resident.
@@ -84,6 +88,8 @@ pub(crate) struct Generation {
     pub resident: usize,
     evaluation: Evaluation<f32>,
     faces: Buffer,
+    #[cfg(test)]
+    places: Buffer,
     data: Vec<FaceData>,
     cells: Vec<Cells>,
     /// For faces and for borders.
@@ -109,13 +115,13 @@ impl Generation {
         let samples = Samples::new(&resident.set, &plan.requests)?;
         let evaluator = renderer.evaluator(resident.set.has_bezier());
         let evaluation =
-            evaluator.prepare(gpu, &resident.on_device, &resident.set, &samples, Wanted::First)?;
+            evaluator.prepare(gpu, &resident.on_device, &resident.set, &samples, Wanted::Normals)?;
         evaluator.run(gpu, &evaluation)?;
         let mut buffers = evaluation.buffers();
         let (Some((points, _)), None) = (buffers.next(), buffers.next()) else {
             return Err(GpuError::TooLarge {
                 what: "the samples of some faces".into(),
-                bytes: (samples.len() * Wanted::First.stride() * size_of::<f32>()) as u64,
+                bytes: (samples.len() * Wanted::Normals.stride() * size_of::<f32>()) as u64,
                 limit: gpu.binding_limit(),
                 adapter: gpu.name().into(),
             });
@@ -130,6 +136,7 @@ impl Generation {
         let common = [(0, stage[0]), (1, stage[1]), (2, &faces), (3, points)];
         let mut trimmed: Vec<_> = common.iter().map(|(k, b)| (*k, b.as_entire_binding())).collect();
         trimmed.push((4, places.as_entire_binding()));
+        trimmed.push((9, resident.on_device.bezier.as_entire_binding()));
         match &texture {
             None => trimmed
                 .extend([(5, resident.pieces.as_entire_binding()), (6, resident.lists.as_entire_binding())]),
@@ -144,7 +151,18 @@ impl Generation {
         ];
         drop(buffers);
         let (live, points, resident) = (members.len(), samples.len(), members[0].home.resident);
-        Ok(Self { resident, evaluation, faces, data: plan.faces, cells, groups, live, points })
+        Ok(Self {
+            resident,
+            evaluation,
+            faces,
+            #[cfg(test)]
+            places,
+            data: plan.faces,
+            cells,
+            groups,
+            live,
+            points,
+        })
     }
 
     /// Faces that it was made with.
@@ -161,6 +179,34 @@ impl Generation {
         drawn: &[(usize, Range<u32>)],
     ) -> Result<Blocks, GpuError> {
         Blocks::new(gpu, [renderer.faces(trim), &renderer.borders], &self.cells, drawn)
+    }
+
+    /// For the pipeline of the tests that reads what fragments know of their place.
+    #[cfg(test)]
+    pub fn probe_group(
+        &self,
+        gpu: &Gpu,
+        pipeline: &wgpu::RenderPipeline,
+        resident: &Resident,
+        stage: [&Buffer; 2],
+    ) -> BindGroup {
+        let (points, _) = self.evaluation.buffers().next().expect("a generation is one batch");
+        let net = &resident.on_device.bezier;
+        let buffers =
+            [(0, stage[0]), (1, stage[1]), (2, &self.faces), (3, points), (4, &self.places), (9, net)];
+        bind_group(gpu, pipeline, &buffers)
+    }
+
+    #[cfg(test)]
+    pub fn cells(&self) -> &[Cells] {
+        &self.cells
+    }
+
+    /// What the shaders know of the faces, and the places and spans of all of them.
+    #[cfg(test)]
+    pub fn known(&self, gpu: &Gpu) -> Result<(&[FaceData], Vec<[f32; 2]>), GpuError> {
+        let bytes = crate::evaluate::read_back(gpu, &self.places, self.places.size())?;
+        Ok((&self.data, bytemuck::pod_collect_to_vec(&bytes)))
     }
 
     /// Evaluates all faces again after an edit of their control points that needs no other samples.
@@ -198,19 +244,30 @@ impl Generation {
 struct Plan {
     requests: Vec<Request>,
     faces: Vec<FaceData>,
-    places: Vec<f32>,
+    places: Vec<[f32; 2]>,
 }
 
 impl Plan {
     fn push(&mut self, resident: &Resident, member: &Member) {
         let (face, home) = (member.face, member.home);
-        let frame = resident.set.entries()[home.surface].frame;
+        let entry = &resident.set.entries()[home.surface];
+        let frame = entry.frame;
         let [us, vs] = &member.grid;
+        let map = &face.parameters;
+        let nurbs: [Vec<f64>; 2] = [
+            us.iter().map(|&u| map.u.nurbs_from_native(u)).collect(),
+            vs.iter().map(|&v| map.v.nurbs_from_native(v)).collect(),
+        ];
+        let (low, high) = (map.nurbs_from_native(face.uv.min), map.nurbs_from_native(face.uv.max));
         let (row_u, row_v) = (self.places.len() as u32, (self.places.len() + us.len()) as u32);
-        for (axis, ts) in [us, vs].into_iter().enumerate() {
+        for axis in 0..2 {
             let (start, length) = (face.uv.min[axis], face.uv.size()[axis]);
-            self.places.extend(ts.iter().map(|t| ((t - start) / length) as f32));
+            let (first, over) = (low[axis], high[axis] - low[axis]);
+            let both = member.grid[axis].iter().zip(&nurbs[axis]);
+            self.places
+                .extend(both.map(|(t, n)| [(t - start) / length, (n - first) / over].map(|x| x as f32)));
         }
+        let nets = self.push_spans(resident.set.has_bezier(), entry, [low, high]);
         let color = face.color.map_or_else(
             || DEFAULT_COLOR.map(|c| linear(f64::from(c) / 255.0) as f32),
             |c| [c[0], c[1], c[2], 1.0],
@@ -225,16 +282,37 @@ impl Plan {
             lists: home.trim.at,
             bands: home.trim.bands,
             turn: if face.reversed { -1.0 } else { 1.0 },
-            ..FaceData::zeroed()
+            ..nets
         });
-        let (map, surface) = (&face.parameters, home.surface);
-        self.requests.push(Request::Grid {
-            surface,
-            us: us.iter().map(|&u| map.u.nurbs_from_native(u)).collect(),
-            vs: vs.iter().map(|&v| map.v.nurbs_from_native(v)).collect(),
-        });
+        let (surface, [us, vs]) = (home.surface, nurbs);
+        self.requests.push(Request::Grid { surface, us, vs });
         let border = member.border.iter().map(|p| map.nurbs_from_native(*p)).collect();
         self.requests.push(Request::Points { surface, uvs: border });
+    }
+
+    /// The spans that a face between two corners (NURBS parameters) lies in, and where their Bézier nets are.
+    fn push_spans(&mut self, has_bezier: bool, entry: &SurfaceEntry, [low, high]: [DVec2; 2]) -> FaceData {
+        if !has_bezier {
+            return FaceData::zeroed();
+        }
+        let mut found = FaceData::zeroed();
+        let mut first = [0; 2];
+        for (axis, direction) in entry.directions.iter().enumerate() {
+            let over = high[axis] - low[axis];
+            let cells = direction.cells_between(low[axis], high[axis]);
+            first[axis] = *cells.start() as u32;
+            found.spans[axis] = self.places.len() as u32;
+            found.counts[axis] = cells.clone().count() as u32;
+            self.places.extend(cells.map(|cell| {
+                let [start, end] = [cell, cell + 1].map(|k| direction.breaks[k]);
+                [(start - low[axis]) / over, over / (end - start)].map(|x| x as f32)
+            }));
+        }
+        let [p, q] = entry.degree.map(|d| d as u32);
+        found.degrees = p | q << 8;
+        found.cells_v = entry.directions[1].breaks.len() as u32 - 1;
+        found.net = entry.bezier + (first[0] * found.cells_v + first[1]) * (p + 1) * (q + 1);
+        found
     }
 
     /// Tells the faces where their points are, and how many cells they have.

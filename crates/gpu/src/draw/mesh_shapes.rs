@@ -41,10 +41,10 @@ pub(crate) fn scenery_of(
         .map(|p| Placed { shape: p.part, world: p.world, color: p.color.filter(|_| style == Style::Shaded) })
         .collect();
     // Of every part the length of its unit, as first placed.
-    let unit = |part: usize| {
-        let world = placed.iter().find(|p| p.shape == part).map(|p| p.world);
-        world.map_or(1.0, |w| w.matrix3.determinant().abs().cbrt())
-    };
+    let mut units = vec![1.0; scene.parts.len()];
+    for alike in placed.chunk_by(|a, b| a.shape == b.shape) {
+        units[alike[0].shape] = alike[0].world.matrix3.determinant().abs().cbrt();
+    }
     let mut painted: Vec<(Shape, Vec<f64>)> = scene
         .parts
         .iter()
@@ -52,7 +52,7 @@ pub(crate) fn scenery_of(
         .enumerate()
         .map(|(index, (part, of_model))| {
             let meshed = exact.map(|e| e.parts[index].meshed.as_slice());
-            shape_of(part, of_model, style, unit(index), meshed)
+            shape_of(part, of_model, style, units[index], meshed)
         })
         .collect();
     let legend = paint(&mut painted, style);
@@ -60,7 +60,7 @@ pub(crate) fn scenery_of(
     (Scenery { shapes, placed }, legend)
 }
 
-/// The shape of a part and, of measured styles, the value at each vertex; of the faces only those of `only`.
+/// The shape of a part and, of measured styles, the value at each vertex; of the faces only those of `only`, which rise.
 fn shape_of(
     part: &ScenePart,
     exact: &Part,
@@ -73,7 +73,7 @@ fn shape_of(
     let mut shape = Shape { middle: 0.5 * (low + high), radius, ..Shape::default() };
     let mut values = Vec::new();
     for (face, mesh) in part.mesh.faces.iter().enumerate() {
-        if only.is_some_and(|only| !only.contains(&face)) {
+        if only.is_some_and(|only| only.binary_search(&face).is_err()) {
             continue;
         }
         let surface = match exact.faces.get(face).map(|f| &f.geometry) {

@@ -5,6 +5,8 @@ mod calm;
 mod camera;
 mod choice;
 mod exact;
+#[cfg(test)]
+mod exact_normal;
 mod exact_scene;
 mod generation;
 mod measures;
@@ -104,6 +106,16 @@ pub enum Trim {
     Texture,
 }
 
+/// The normals that exact faces are lit by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Normals {
+    /// Evaluated in every pixel; interpolated at poles, and on surfaces whose Bézier nets the device cannot bind.
+    #[default]
+    Exact,
+    /// Those of the samples, interpolated between them.
+    Interpolated,
+}
+
 /// How a picture is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -123,6 +135,8 @@ pub struct RenderOptions {
     pub section: Option<SectionPlane>,
     /// Of exact faces.
     pub trim: Trim,
+    /// Of exact faces.
+    pub normals: Normals,
     /// Leave out what the picture cannot show: faces beyond it, and backs of closed shells. Of exact faces.
     pub reject: bool,
 }
@@ -140,6 +154,7 @@ impl Default for RenderOptions {
             background: Background::LIGHT,
             section: None,
             trim: Trim::Exact,
+            normals: Normals::Exact,
             reject: true,
         }
     }
@@ -175,6 +190,9 @@ impl RenderOptions {
     }
     pub fn with_trim(self, trim: Trim) -> Self {
         Self { trim, ..self }
+    }
+    pub fn with_normals(self, normals: Normals) -> Self {
+        Self { normals, ..self }
     }
     pub fn with_reject(self, reject: bool) -> Self {
         Self { reject, ..self }

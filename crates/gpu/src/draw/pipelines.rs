@@ -44,7 +44,19 @@ pub(crate) fn pipeline(
     [vertex, fragment]: [&str; 2],
     buffers: &[Option<wgpu::VertexBufferLayout>],
 ) -> RenderPipeline {
+    pipeline_into(gpu, shader, [vertex, fragment], buffers, (&[COLOR], SAMPLES))
+}
+
+/// As [`pipeline`], into targets of other formats with so many samples a pixel.
+pub(crate) fn pipeline_into(
+    gpu: &Gpu,
+    shader: Shader,
+    [vertex, fragment]: [&str; 2],
+    buffers: &[Option<wgpu::VertexBufferLayout>],
+    (targets, count): (&[TextureFormat], u32),
+) -> RenderPipeline {
     let module = module(gpu, shader);
+    let targets: Vec<_> = targets.iter().map(|&format| Some(format.into())).collect();
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(shader.name),
         layout: None,
@@ -63,12 +75,12 @@ pub(crate) fn pipeline(
             // None: of slivers the slope is noise, and lines are moved nearer instead.
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
+        multisample: wgpu::MultisampleState { count, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module: &module,
             entry_point: Some(fragment),
             compilation_options: Default::default(),
-            targets: &[Some(COLOR.into())],
+            targets: &targets,
         }),
         multiview_mask: None,
         cache: None,

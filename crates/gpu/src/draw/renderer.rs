@@ -4,14 +4,11 @@ use super::mesh_groups::{Lines, Triangles};
 use super::mesh_shapes::scene_outline;
 use super::pipelines::{bind_group, pipeline};
 use super::target::Target;
-use super::view_data::{PlacementData, ViewData, placement, view_data};
-use super::{
-    Background, Camera, ExactRenderer, ExactScene, FrameCounts, Picture, Placed, RenderOptions, Scenery,
-};
+use super::view_data::{PlacementData, ViewData, standing, view_data};
+use super::{Background, ExactRenderer, ExactScene, FrameCounts, Picture, RenderOptions, Scenery};
 use crate::evaluate::empty_storage;
 use crate::{Gpu, GpuError, shaders};
 use chordal_mesh::Scene;
-use glam::DAffine3;
 use std::ops::Range;
 use wgpu::{Buffer, BufferUsages, RenderPass, RenderPipeline};
 
@@ -64,7 +61,7 @@ impl Renderer {
                 placed[of_shape[0].shape] = first..first + of_shape.len() as u32;
                 first += of_shape.len() as u32;
             }
-            let data: Vec<_> = scenery.placed.iter().map(|p| placement_data(scenery, &camera, p)).collect();
+            let data: Vec<_> = standing(scenery).iter().map(|s| s.in_view(&camera)).collect();
             stage.set(gpu, &view_data(&camera, options), &data);
             let triangles = Triangles::upload(gpu, &scenery.shapes)?;
             let lines = Lines::upload(gpu, &self.lines, &scenery.shapes, stage.buffers())?;
@@ -134,12 +131,6 @@ pub(crate) fn draw(gpu: &Gpu, target: &Target, background: Background, record: i
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     record(&mut target.begin(&mut encoder, background));
     gpu.queue.submit([encoder.finish()]);
-}
-
-/// A placement of a shape as the shaders read it.
-pub(crate) fn placement_data(scenery: &Scenery, camera: &Camera, placed: &Placed) -> PlacementData {
-    let local = DAffine3::from_translation(scenery.shapes[placed.shape].middle);
-    placement(camera, &(placed.world * local), placed.color)
 }
 
 /// The buffers of what changes with the view: the view itself and where parts stand in it.

@@ -7,7 +7,7 @@ struct View {
     eye: f32,                 // distance of the eye from the origin of the view, 0: infinitely far
     line_color: vec4<f32>,    // linear; opacity 0: the face's own
     fill: vec4<f32>,          // linear; opacity 1: in place of every colour, without light
-    depth: vec4<f32>,         // x: length that a pixel covers at the origin of the view
+    depth: vec4<f32>,         // x: length that a pixel covers at the origin of the view; y: 1 where exact faces have a normal of each pixel's own
     section: vec4<f32>,       // of view space: what lies where dot(normal, p) > offset is cut away; 0: nothing
 }
 

@@ -1,8 +1,8 @@
 //! The view and the placements as the shaders read them.
 
-use super::{Background, Camera, RenderOptions, Style};
+use super::{Background, Camera, Normals, Placed, RenderOptions, Scenery, Style};
 use bytemuck::{Pod, Zeroable};
-use glam::{DAffine3, DMat4, DVec3, Mat4};
+use glam::{DAffine3, DMat3, DMat4, Mat4};
 
 /// As `View` in `view.wgsl`.
 #[repr(C)]
@@ -52,29 +52,59 @@ pub(crate) fn view_data(camera: &Camera, options: &RenderOptions) -> ViewData {
         eye: camera.distance.unwrap_or(0.0) as f32,
         line_color: [line, line, line * 1.15, 1.0],
         fill: [background[0], background[1], background[2], fill],
-        depth: [camera.pixel as f32, 0.0, 0.0, 0.0],
+        depth: [camera.pixel as f32, f32::from(u8::from(options.normals == Normals::Exact)), 0.0, 0.0],
         section,
     }
 }
 
-/// One placement as the shaders read it; composed in double precision, so that places far from the origin keep their digits.
-pub(crate) fn placement(camera: &Camera, world: &DAffine3, color: Option<[f32; 4]>) -> PlacementData {
-    let view = camera.view * *world;
-    // Normals turn with the inverse transpose; a mirror turns their sense too.
-    let mirrored = view.matrix3.determinant().signum();
-    let normal = view.matrix3.inverse().transpose() * mirrored;
-    let column = |v: DVec3| v.normalize_or_zero().extend(0.0).as_vec4().to_array();
-    let scale = normal.col(0).length().max(normal.col(1).length()).max(normal.col(2).length());
-    let scaled = |v: DVec3| (v / scale).extend(0.0).as_vec4().to_array();
-    let columns = [normal.col(0), normal.col(1), normal.col(2)];
-    let finite = columns.iter().all(|c| c.is_finite()) && scale > 0.0;
-    PlacementData {
-        view: Mat4::to_cols_array_2d(&DMat4::from(view).as_mat4()),
-        normal: if finite {
-            columns.map(scaled)
-        } else {
-            [view.matrix3.x_axis, view.matrix3.y_axis, view.matrix3.z_axis].map(column)
-        },
-        color: color.map_or([0.0; 4], |c| [c[0], c[1], c[2], 1.0]),
+/// What of a placement does not change with the view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing {
+    /// From about the middle of the shape to the world.
+    world: DAffine3,
+    /// Turns normals, at its longest by 1.
+    normal: DMat3,
+    color: [f32; 4],
+}
+
+impl Standing {
+    fn new(world: DAffine3, color: Option<[f32; 4]>) -> Self {
+        // Normals turn with the inverse transpose; a mirror turns their sense too.
+        let m = world.matrix3;
+        let turned = m.inverse().transpose() * m.determinant().signum();
+        let scale = turned.x_axis.length().max(turned.y_axis.length()).max(turned.z_axis.length());
+        let finite = turned.is_finite() && scale > 0.0;
+        let flat = || {
+            DMat3::from_cols(
+                m.x_axis.normalize_or_zero(),
+                m.y_axis.normalize_or_zero(),
+                m.z_axis.normalize_or_zero(),
+            )
+        };
+        Self {
+            world,
+            normal: if finite { turned * scale.recip() } else { flat() },
+            color: color.map_or([0.0; 4], |c| [c[0], c[1], c[2], 1.0]),
+        }
     }
+
+    /// As the shaders read it; composed in double precision, so that places far from the origin keep their digits. The axes of a view
+    /// are at right angles and of length 1: they turn normals as they turn points.
+    pub fn in_view(&self, camera: &Camera) -> PlacementData {
+        let normal = camera.view.matrix3 * self.normal;
+        PlacementData {
+            view: Mat4::to_cols_array_2d(&DMat4::from(camera.view * self.world).as_mat4()),
+            normal: [normal.x_axis, normal.y_axis, normal.z_axis].map(|c| c.extend(0.0).as_vec4().to_array()),
+            color: self.color,
+        }
+    }
+}
+
+/// Of all placements of a scenery.
+pub(crate) fn standing(scenery: &Scenery) -> Vec<Standing> {
+    let of = |p: &Placed| {
+        let about = DAffine3::from_translation(scenery.shapes[p.shape].middle);
+        Standing::new(p.world * about, p.color)
+    };
+    scenery.placed.iter().map(of).collect()
 }

@@ -56,7 +56,9 @@ impl Variant {
 pub enum Wanted {
     /// x, y, z.
     Points,
-    /// Point, derivatives by u and by v, unit normal (zero where there is none).
+    /// Point, unit normal (zero where there is none).
+    Normals,
+    /// Point, derivatives by u and by v, unit normal.
     First,
     /// As [`Wanted::First`], then the derivatives by uu, uv and vv.
     Second,
@@ -67,6 +69,7 @@ impl Wanted {
     pub fn stride(self) -> usize {
         match self {
             Self::Points => 3,
+            Self::Normals => 6,
             Self::First => 12,
             Self::Second => 21,
         }
@@ -74,7 +77,7 @@ impl Wanted {
     pub(crate) fn planes(self) -> usize {
         match self {
             Self::Points => 1,
-            Self::First => 2,
+            Self::Normals | Self::First => 2,
             Self::Second => 3,
         }
     }
@@ -179,10 +182,13 @@ pub fn evaluate_twin<R: Real>(
     let mut out = vec![R::zero(); samples.len() * wanted.stride()];
     let kernel = match (variant, wanted) {
         (Variant::Direct, Wanted::Points) => kernels::direct::points,
+        (Variant::Direct, Wanted::Normals) => kernels::direct::normals,
         (Variant::Direct, _) => kernels::direct::jets,
         (Variant::Bernstein, Wanted::Points) => kernels::bernstein::points,
+        (Variant::Bernstein, Wanted::Normals) => kernels::bernstein::normals,
         (Variant::Bernstein, _) => kernels::bernstein::jets,
         (_, Wanted::Points) => kernels::tensor::points,
+        (_, Wanted::Normals) => kernels::tensor::normals,
         _ => kernels::tensor::jets,
     };
     kernel(&inputs, &mut out);

@@ -1,8 +1,8 @@
 //! The surfaces of a set as buffers on the device.
 
-use crate::layout::Span;
-use crate::{Gpu, GpuError, Real, SurfaceSet};
+use crate::{Edit, Gpu, GpuError, Real, SurfaceSet};
 use std::marker::PhantomData;
+use std::ops::Range;
 use wgpu::{Buffer, BufferUsages};
 
 /// A set of surfaces on the device. An edit uploads one surface.
@@ -38,35 +38,34 @@ impl<R: Real> OnDevice<R> {
         self.bytes
     }
 
-    /// Uploads surface `index` of the set again, and nothing else; returns the bytes that went.
+    /// Uploads of surface `index` of the set what an edit changed, and nothing else; returns the bytes that went.
     ///
     /// # Errors
     /// [`GpuError::NoSuchSurface`], [`GpuError::Lost`].
-    pub fn update(&self, gpu: &Gpu, set: &SurfaceSet<R>, index: usize) -> Result<u64, GpuError> {
+    pub fn update(&self, gpu: &Gpu, set: &SurfaceSet<R>, index: usize, edit: Edit) -> Result<u64, GpuError> {
         let entry = set.entries.get(index).ok_or(GpuError::NoSuchSurface(index))?;
-        let mut sent = 0;
-        let mut send = |buffer: &Buffer, at: usize, size: usize, bytes: &[u8]| {
-            gpu.queue.write_buffer(buffer, (at * size) as u64, bytes);
-            sent += bytes.len() as u64;
-        };
         gpu.watched("uploading a surface", || {
-            let points = |at: u32, count: u32| at as usize..(at + count) as usize;
-            let net = bytemuck::cast_slice(&set.net[points(entry.net, entry.points)]);
-            send(&self.net, entry.net as usize, size_of::<[R; 4]>(), net);
-            if entry.beziers > 0 {
-                let cells = bytemuck::cast_slice(&set.bezier[points(entry.bezier, entry.beziers)]);
-                send(&self.bezier, entry.bezier as usize, size_of::<[R; 4]>(), cells);
+            let mut sent = 0;
+            if edit.points {
+                sent += send(gpu, &self.net, &set.net, entry.net_range());
             }
-            for d in &entry.directions {
-                let windows = bytemuck::cast_slice(&set.windows[points(d.window, d.windows)]);
-                send(&self.windows, d.window as usize, size_of::<R>(), windows);
-                let spans = bytemuck::cast_slice(&set.spans[points(d.span, d.breaks.len() as u32 - 1)]);
-                send(&self.spans, d.span as usize, size_of::<Span>(), spans);
+            if edit.points || edit.knots {
+                sent += send(gpu, &self.bezier, &set.bezier, entry.bezier_range());
             }
-            Ok(())
-        })?;
-        Ok(sent)
+            for d in entry.directions.iter().filter(|_| edit.knots) {
+                sent += send(gpu, &self.windows, &set.windows, d.windows());
+                sent += send(gpu, &self.spans, &set.spans, d.spans());
+            }
+            Ok(sent)
+        })
     }
+}
+
+/// Uploads a part of a buffer's data; the bytes that went.
+fn send<T: bytemuck::Pod>(gpu: &Gpu, buffer: &Buffer, data: &[T], part: Range<usize>) -> u64 {
+    let bytes: &[u8] = bytemuck::cast_slice(&data[part.clone()]);
+    gpu.queue.write_buffer(buffer, (part.start * size_of::<T>()) as u64, bytes);
+    bytes.len() as u64
 }
 
 /// A storage buffer that holds `data`; `what` names it in errors.

@@ -17,6 +17,7 @@ pub struct Evaluator<R> {
     passes: Option<ComputePipeline>,
     find: Option<ComputePipeline>,
     points: ComputePipeline,
+    normals: ComputePipeline,
     jets: ComputePipeline,
     real: PhantomData<R>,
 }
@@ -51,6 +52,7 @@ impl<R: Real> Evaluator<R> {
                 passes: passes.map(|shader| pipeline::<R>(gpu, shader, "main")),
                 find: find.map(|shader| pipeline::<R>(gpu, shader, "main")),
                 points: pipeline::<R>(gpu, points, "points"),
+                normals: pipeline::<R>(gpu, points, "normals"),
                 jets: pipeline::<R>(gpu, points, "jets"),
                 real: PhantomData,
             })
@@ -162,7 +164,11 @@ impl<R: Real> Evaluator<R> {
     }
 
     fn kernel(&self, wanted: Wanted) -> &ComputePipeline {
-        if wanted == Wanted::Points { &self.points } else { &self.jets }
+        match wanted {
+            Wanted::Points => &self.points,
+            Wanted::Normals => &self.normals,
+            Wanted::First | Wanted::Second => &self.jets,
+        }
     }
 
     /// Runs what was prepared; the points stay on the device.

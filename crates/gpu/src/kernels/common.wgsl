@@ -1,7 +1,4 @@
-// What all evaluation kernels share. `real` is f32 or f64, declared above this text by the host.
-
-alias real3 = vec3<real>;
-alias real4 = vec4<real>;
+// What all evaluation kernels share. `real` is f32 or f64, declared above this text by the host, with its vectors.
 
 // One grid or list of points on one surface. Point (i, j) of a grid is output number first + i * height + j.
 struct Head {

@@ -1,8 +1,9 @@
 //! Twin of `direct.wgsl`: basis functions and sum in one kernel.
 
-use super::V4;
+use super::normal::tangents_of;
 use super::samples::{Inputs, Jet};
 use super::tensor::control;
+use super::{Sample, V4};
 use crate::Real;
 use crate::layout::Span;
 
@@ -64,27 +65,39 @@ pub(crate) fn points<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
     }
 }
 
-pub(crate) fn jets<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
-    let planes = inputs.params.planes as usize;
+pub(crate) fn normals<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
     for s in inputs.samples() {
-        let (u, v) = (inputs.span(s.row_u), inputs.span(s.row_v));
-        let bu = fill(inputs.windows, u, inputs.ts[s.row_u], planes);
-        let bv = fill(inputs.windows, v, inputs.ts[s.row_v], planes);
-        let mut jet = Jet::<R>::default();
-        for i in 0..=u.degree {
-            let mut line = [V4::default(); 3];
-            for j in 0..=v.degree {
-                let h = control(inputs, &s, i, j);
-                for b in 0..3 {
-                    line[b] = line[b] + h * bv[b][j as usize];
-                }
-            }
-            for a in 0..3 {
-                for b in 0..3 - a {
-                    jet[a][b] = jet[a][b] + line[b] * bu[a][i as usize];
-                }
+        let jet = jet_of(inputs, &s);
+        inputs.write_normal(s, &tangents_of(jet[0][0], jet[1][0], jet[0][1]), out);
+    }
+}
+
+pub(crate) fn jets<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
+    for s in inputs.samples() {
+        inputs.write_jet(s, &jet_of(inputs, &s), out);
+    }
+}
+
+/// The derivatives that `planes` asks for.
+fn jet_of<R: Real>(inputs: &Inputs<R>, s: &Sample) -> Jet<R> {
+    let planes = inputs.params.planes as usize;
+    let (u, v) = (inputs.span(s.row_u), inputs.span(s.row_v));
+    let bu = fill(inputs.windows, u, inputs.ts[s.row_u], planes);
+    let bv = fill(inputs.windows, v, inputs.ts[s.row_v], planes);
+    let mut jet = Jet::<R>::default();
+    for i in 0..=u.degree {
+        let mut line = [V4::default(); 3];
+        for j in 0..=v.degree {
+            let h = control(inputs, s, i, j);
+            for b in 0..3 {
+                line[b] = line[b] + h * bv[b][j as usize];
             }
         }
-        inputs.write_jet(s, &jet, out);
+        for a in 0..3 {
+            for b in 0..3 - a {
+                jet[a][b] = jet[a][b] + line[b] * bu[a][i as usize];
+            }
+        }
     }
+    jet
 }

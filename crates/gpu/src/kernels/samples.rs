@@ -1,5 +1,6 @@
 //! Twin of `samples.wgsl`.
 
+use super::normal::{Tangents, tangents_of, unit_normal};
 use super::{V3, V4};
 use crate::Real;
 use crate::layout::{Head, Params, Row, Span, Tile};
@@ -66,19 +67,33 @@ impl<R: Real> Inputs<'_, R> {
         write3(out, sample.at * 3, h.xyz() * (R::one() / h.w()));
     }
 
-    pub fn write_jet(&self, sample: Sample, h: &Jet<R>, out: &mut [R]) {
-        let by_w = R::one() / h[0][0].w();
-        let p = h[0][0].xyz() * by_w;
-        let du = (h[1][0].xyz() - p * h[1][0].w()) * by_w;
-        let dv = (h[0][1].xyz() - p * h[0][1].w()) * by_w;
-        let inverse_u = self.windows[self.span(sample.row_u).window as usize];
-        let inverse_v = self.windows[self.span(sample.row_v).window as usize];
+    pub fn write_normal(&self, sample: Sample, t: &Tangents<R>, out: &mut [R]) {
+        write3(out, sample.at * 6, t.p);
+        write3(out, sample.at * 6 + 3, unit_normal(t, R::from_f64(R::DEGENERATE)));
+    }
+
+    /// The inverse lengths of the spans of a sample.
+    fn inverses(&self, sample: Sample) -> [R; 2] {
+        [sample.row_u, sample.row_v].map(|row| self.windows[self.span(row).window as usize])
+    }
+
+    pub fn write_first(&self, sample: Sample, t: &Tangents<R>, out: &mut [R]) {
+        let [inverse_u, inverse_v] = self.inverses(sample);
         let at = sample.at * if self.params.planes == 3 { 21 } else { 12 };
-        write3(out, at, p);
-        write3(out, at + 3, du * inverse_u);
-        write3(out, at + 6, dv * inverse_v);
-        write3(out, at + 9, normal(du, dv));
+        write3(out, at, t.p);
+        write3(out, at + 3, t.du * inverse_u);
+        write3(out, at + 6, t.dv * inverse_v);
+        write3(out, at + 9, unit_normal(t, R::from_f64(R::DEGENERATE)));
+    }
+
+    pub fn write_jet(&self, sample: Sample, h: &Jet<R>, out: &mut [R]) {
+        let t = tangents_of(h[0][0], h[1][0], h[0][1]);
+        self.write_first(sample, &t, out);
         if self.params.planes == 3 {
+            let [inverse_u, inverse_v] = self.inverses(sample);
+            let at = sample.at * 21;
+            let by_w = R::one() / h[0][0].w();
+            let Tangents { p, du, dv } = t;
             let twice = |x: R| x + x;
             let duu = (h[2][0].xyz() - du * twice(h[1][0].w()) - p * h[2][0].w()) * by_w;
             let duv = (h[1][1].xyz() - du * h[0][1].w() - dv * h[1][0].w() - p * h[1][1].w()) * by_w;
@@ -87,21 +102,6 @@ impl<R: Real> Inputs<'_, R> {
             write3(out, at + 15, duv * (inverse_u * inverse_v));
             write3(out, at + 18, dvv * (inverse_v * inverse_v));
         }
-    }
-}
-
-/// The unit vector along du × dv; zero where that vanishes.
-fn normal<R: Real>(V3([ux, uy, uz]): V3<R>, V3([vx, vy, vz]): V3<R>) -> V3<R> {
-    let n = V3([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]);
-    let squared = n.0[0] * n.0[0] + n.0[1] * n.0[1] + n.0[2] * n.0[2];
-    let du = ux * ux + uy * uy + uz * uz;
-    let dv = vx * vx + vy * vy + vz * vz;
-    let longest = if du > dv { du } else { dv };
-    let degenerate = R::from_f64(R::DEGENERATE);
-    if squared > degenerate * longest * longest {
-        n * (R::one() / squared.square_root())
-    } else {
-        V3::default()
     }
 }
 

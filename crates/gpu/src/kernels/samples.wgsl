@@ -40,33 +40,35 @@ fn write_point(sample: Sample, h: real4) {
     write3(sample.at * 3u, h.xyz * (real(1) / h.w));
 }
 
-// Point, first derivatives, unit normal (0 where the derivatives are parallel) and, where `planes` is 3, second derivatives.
-fn write_jet(sample: Sample, jet: Jet) {
-    let by_w = real(1) / jet.h00.w;
-    let p = jet.h00.xyz * by_w;
-    let du = (jet.h10.xyz - p * jet.h10.w) * by_w;
-    let dv = (jet.h01.xyz - p * jet.h01.w) * by_w;
-    // By the span's parameters, so that no knot interval, however short, under- or overflows the product.
-    let n = real3(du.y * dv.z - du.z * dv.y, du.z * dv.x - du.x * dv.z, du.x * dv.y - du.y * dv.x);
-    let squared = n.x * n.x + n.y * n.y + n.z * n.z;
-    var normal = real3(real(0), real(0), real(0));
-    let longest = max(du.x * du.x + du.y * du.y + du.z * du.z, dv.x * dv.x + dv.y * dv.y + dv.z * dv.z);
-    // At a pole what should be 0 is rounding, and a direction made of that is none.
-    if squared > DEGENERATE * longest * longest {
-        normal = n * (real(1) / sqrt(squared));
-    }
+// Point and unit normal.
+fn write_normal(sample: Sample, t: Tangents) {
+    write3(sample.at * 6u, t.p);
+    write3(sample.at * 6u + 3u, unit_normal(t, DEGENERATE));
+}
+
+// Point, first derivatives, unit normal (0 where the derivatives are parallel).
+fn write_first(sample: Sample, t: Tangents) {
     let inverse_u = windows[spans[rows[sample.row_u].span].window];
     let inverse_v = windows[spans[rows[sample.row_v].span].window];
-    let stride = select(12u, 21u, params.planes == 3u);
-    let at = sample.at * stride;
-    write3(at, p);
-    write3(at + 3u, du * inverse_u);
-    write3(at + 6u, dv * inverse_v);
-    write3(at + 9u, normal);
+    let at = sample.at * select(12u, 21u, params.planes == 3u);
+    write3(at, t.p);
+    write3(at + 3u, t.du * inverse_u);
+    write3(at + 6u, t.dv * inverse_v);
+    write3(at + 9u, unit_normal(t, DEGENERATE));
+}
+
+// The same and, where `planes` is 3, second derivatives.
+fn write_jet(sample: Sample, jet: Jet) {
+    let t = tangents_of(jet.h00, jet.h10, jet.h01);
+    write_first(sample, t);
     if params.planes == 3u {
-        let duu = (jet.h20.xyz - du * (jet.h10.w + jet.h10.w) - p * jet.h20.w) * by_w;
-        let duv = (jet.h11.xyz - du * jet.h01.w - dv * jet.h10.w - p * jet.h11.w) * by_w;
-        let dvv = (jet.h02.xyz - dv * (jet.h01.w + jet.h01.w) - p * jet.h02.w) * by_w;
+        let inverse_u = windows[spans[rows[sample.row_u].span].window];
+        let inverse_v = windows[spans[rows[sample.row_v].span].window];
+        let at = sample.at * 21u;
+        let by_w = real(1) / jet.h00.w;
+        let duu = (jet.h20.xyz - t.du * (jet.h10.w + jet.h10.w) - t.p * jet.h20.w) * by_w;
+        let duv = (jet.h11.xyz - t.du * jet.h01.w - t.dv * jet.h10.w - t.p * jet.h11.w) * by_w;
+        let dvv = (jet.h02.xyz - t.dv * (jet.h01.w + jet.h01.w) - t.p * jet.h02.w) * by_w;
         write3(at + 12u, duu * (inverse_u * inverse_u));
         write3(at + 15u, duv * (inverse_u * inverse_v));
         write3(at + 18u, dvv * (inverse_v * inverse_v));

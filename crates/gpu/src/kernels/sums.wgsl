@@ -26,12 +26,8 @@ fn points(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_ind
     write_point(sample, sum);
 }
 
-@compute @workgroup_size(64)
-fn jets(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let sample = sample_of(group, local);
-    if !sample.valid {
-        return;
-    }
+// The derivatives that `planes` asks for.
+fn jet_of(sample: Sample) -> Jet {
     let head = heads[sample.head];
     let span_u = spans[rows[sample.row_u].span];
     let span_v = spans[rows[sample.row_v].span];
@@ -65,5 +61,24 @@ fn jets(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             jet.h20 = jet.h20 + line0 * along_u(sample, p, 2u, i);
         }
     }
-    write_jet(sample, jet);
+    return jet;
+}
+
+@compute @workgroup_size(64)
+fn normals(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let sample = sample_of(group, local);
+    if !sample.valid {
+        return;
+    }
+    let jet = jet_of(sample);
+    write_normal(sample, tangents_of(jet.h00, jet.h10, jet.h01));
+}
+
+@compute @workgroup_size(64)
+fn jets(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let sample = sample_of(group, local);
+    if !sample.valid {
+        return;
+    }
+    write_jet(sample, jet_of(sample));
 }

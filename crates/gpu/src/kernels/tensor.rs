@@ -1,5 +1,6 @@
 //! Twin of `tensor.wgsl`: sums control points times basis functions that passes have left in a buffer.
 
+use super::normal::tangents_of;
 use super::samples::{Inputs, Jet};
 use super::{Sample, V4};
 use crate::Real;
@@ -27,27 +28,39 @@ pub(crate) fn points<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
     }
 }
 
-pub(crate) fn jets<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
-    let planes = inputs.params.planes as usize;
+pub(crate) fn normals<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
     for s in inputs.samples() {
-        let (p, q) = (inputs.span(s.row_u).degree, inputs.span(s.row_v).degree);
-        let mut jet = Jet::<R>::default();
-        for i in 0..=p {
-            let mut line = [V4::default(); 3];
-            for j in 0..=q {
-                let h = control(inputs, &s, i, j);
-                for b in 0..planes {
-                    line[b] = line[b] + h * function_of(inputs, s.row_v, q, b as u32, j);
-                }
-            }
-            for a in 0..planes {
-                for b in 0..planes - a {
-                    jet[a][b] = jet[a][b] + line[b] * function_of(inputs, s.row_u, p, a as u32, i);
-                }
+        let jet = jet_of(inputs, &s);
+        inputs.write_normal(s, &tangents_of(jet[0][0], jet[1][0], jet[0][1]), out);
+    }
+}
+
+pub(crate) fn jets<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
+    for s in inputs.samples() {
+        inputs.write_jet(s, &jet_of(inputs, &s), out);
+    }
+}
+
+/// The derivatives that `planes` asks for.
+fn jet_of<R: Real>(inputs: &Inputs<R>, s: &Sample) -> Jet<R> {
+    let planes = inputs.params.planes as usize;
+    let (p, q) = (inputs.span(s.row_u).degree, inputs.span(s.row_v).degree);
+    let mut jet = Jet::<R>::default();
+    for i in 0..=p {
+        let mut line = [V4::default(); 3];
+        for j in 0..=q {
+            let h = control(inputs, s, i, j);
+            for b in 0..planes {
+                line[b] = line[b] + h * function_of(inputs, s.row_v, q, b as u32, j);
             }
         }
-        inputs.write_jet(s, &jet, out);
+        for a in 0..planes {
+            for b in 0..planes - a {
+                jet[a][b] = jet[a][b] + line[b] * function_of(inputs, s.row_u, p, a as u32, i);
+            }
+        }
     }
+    jet
 }
 
 /// Control point (i, j) of the spans of a sample.
