@@ -9,6 +9,8 @@
 //!
 //! The bulge is measured where it counts, on the surface: how far the surface over the middle of a chord's parameters is
 //! from the curve's middle, less what the edge lies off the surface at both ends.
+//!
+//! Chords that touch along a line do not cross, but leave no area between them ([`shut_corners`]).
 
 use crate::chart::{FaceContext, Segment};
 use crate::triangulate::orient;
@@ -60,6 +62,45 @@ pub(crate) fn coarse_chords(
     coarse.sort_unstable();
     coarse.dedup();
     coarse
+}
+
+/// Chords at corners that they leave shut: both lie on one line and only their curves tell them apart. The triangle between two
+/// such has no area.
+///
+/// ```text
+///     __--b     Two curves leave p in one direction. Chords of equal direction are the longer the flatter their curves,
+///   p==a        and the flatter curve lies nearer to the tangent: halving the longer chord opens the corner.
+/// ```
+pub(crate) fn shut_corners(context: &FaceContext<'_, '_>, chart: &Chart) -> Vec<(u32, u32)> {
+    let mut coarse = Vec::new();
+    for &(start, end) in &chart.loops {
+        let (start, end) = (start as usize, end as usize);
+        for v in start..end {
+            let before = if v == start { end - 1 } else { v - 1 };
+            let after = if v + 1 == end { start } else { v + 1 };
+            if !is_shut([before, v, after].map(|i| chart.points[i].uv)) {
+                continue;
+            }
+            let sides = [side(context, chart, before, v), side(context, chart, v, after)];
+            let [a, b] = [0, 1].map(|i| sides[i].xyz[0].distance(sides[i].xyz[1]));
+            let longer = &sides[usize::from(b > a)];
+            if let Segment::Edge { edge, chord } = longer.segment
+                && longer.bulge > 0.0
+                && (a - b).abs() > STRAIGHT * a.max(b)
+            {
+                coarse.push((edge, chord));
+            }
+        }
+    }
+    coarse.sort_unstable();
+    coarse.dedup();
+    coarse
+}
+
+/// True where a polygon turns back on itself at `v`.
+fn is_shut([a, v, b]: [DVec2; 3]) -> bool {
+    let (to_a, to_b) = (a - v, b - v);
+    to_a.dot(to_b) > 0.0 && to_a.perp_dot(to_b).abs() <= STRAIGHT * to_a.length() * to_b.length()
 }
 
 /// The curved chords that meet at these points.

@@ -6,7 +6,7 @@ mod shape;
 use self::shape::{Shape, boundary_triangles, shape};
 use crate::bulk::Foreseen;
 use crate::chart::{FaceContext, Key, Segment};
-use crate::crossings::coarse_chords;
+use crate::crossings::{coarse_chords, shut_corners};
 use crate::doubled::SharedEdge;
 use crate::metric::{Limits, Metric, Sizing};
 use crate::options::{Cancel, Options};
@@ -154,6 +154,10 @@ impl<'a, 's> FaceWork<'a, 's> {
         let started = Instant::now();
         let chart = Chart::new(context, limits, how.seam_chord, how.creased)?;
         let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
+        let shut = if context.last_resort { Vec::new() } else { shut_corners(context, &chart) };
+        if !shut.is_empty() {
+            return Ok(Attempt::Over(Outcome::Finer(shut)));
+        }
         let shape = shape(context, limits, UvBox::from_points(points.iter().copied()));
         let mut clipped = false;
         let triangles = match boundary_triangles(&points, &chart, shape) {
