@@ -91,17 +91,19 @@ pub fn facet_bound(
 }
 
 /// Upper bound of the distance between the image of a segment of parameter space and the chord between its ends' points; from
-/// second derivatives about the segment only, however wild the surface is beside it. Infinite where nothing can be said.
+/// second derivatives about the segment only, in so many equal `parts`, however wild the surface is beside it. Infinite where nothing
+/// can be said.
 pub fn chord_bound(
     bounds: &SurfaceBounds<'_>,
     uv: [DVec2; 2],
     xyz: [DVec3; 2],
+    parts: usize,
     scratch: &mut Vec<Piece>,
 ) -> f64 {
     match bounds.surface() {
         Surface::Plane { .. } => 0.0,
         Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Sphere { .. } => f64::INFINITY,
-        _ => general::chord_bound(bounds, uv, xyz, scratch),
+        _ => general::chord_bound(bounds, uv, xyz, parts, scratch),
     }
 }
 

@@ -154,10 +154,6 @@ impl<'a, 's> FaceWork<'a, 's> {
         let started = Instant::now();
         let chart = Chart::new(context, limits, how.seam_chord, how.creased)?;
         let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
-        let shut = if context.last_resort { Vec::new() } else { shut_corners(context, &chart) };
-        if !shut.is_empty() {
-            return Ok(Attempt::Over(Outcome::Finer(shut)));
-        }
         let shape = shape(context, limits, UvBox::from_points(points.iter().copied()));
         let mut clipped = false;
         let triangles = match boundary_triangles(&points, &chart, shape) {
@@ -217,6 +213,10 @@ impl<'a, 's> FaceWork<'a, 's> {
                 Ok(Attempt::Over(Outcome::Done(Box::new(result))))
             }
             Verdict::Proven { error, bound } => {
+                let shut = if context.last_resort { Vec::new() } else { shut_corners(context, &work.chart) };
+                if !shut.is_empty() {
+                    return Ok(Attempt::Over(Outcome::Finer(shut)));
+                }
                 Ok(Attempt::Over(Outcome::Done(Box::new(work.finish(error, bound, options)))))
             }
         }

@@ -1,18 +1,19 @@
 //! Proof: every triangle gets a bound; one over budget is flipped, gets a point inside, or asks its edge to be finer.
 
+mod chords;
 mod flip;
 mod sampled;
 
+use self::chords::{CHORD_BENDS, bend, close_to_boundary};
 use self::sampled::sampled_bound;
 use crate::chart::{Key, Segment};
 use crate::doubled::sorted;
 use crate::face::FaceWork;
 use crate::metric::{Limits, Metric};
 use crate::options::{Bound, Cancel, Options};
+use crate::strategy::Strategy;
 use crate::triangulate::{Location, NONE, orient};
-use chordal_nurbs::{
-    DVec2, DVec3, Facet, FacetBound, Piece, Surface, SurfaceBounds, chord_bound, facet_bound,
-};
+use chordal_nurbs::{DVec2, DVec3, Facet, FacetBound, Piece, Surface, SurfaceBounds, facet_bound};
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -40,6 +41,9 @@ pub(crate) struct Prover<'a> {
     sampled: bool,
     /// The last round: what cannot be mended is accepted and reported with its error.
     accept: bool,
+    /// Chords with bounds far beyond the tolerance are looked at in parts: the default's own way. The other methods set their points
+    /// before the proof speaks, and what they are is what they would be without it.
+    looks_closer: bool,
     /// Whatever is mended, the face will not be proven: little effort will do.
     pub hopeless: bool,
 }
@@ -62,12 +66,6 @@ const CREASE_BESIDE: f64 = 0.01;
 
 /// Facets lower than this share of the tolerance may face any way.
 const FOLD_HEIGHT: f64 = 0.05;
-
-/// A chord this many tolerances off, bounded by itself, is clearly not what is wrong with its facet.
-const FINE_CHORD: f64 = 0.5;
-
-/// A chord that bends by less than this share of a facet's height is straight to it.
-const CHORD_BENDS: f64 = 0.25;
 
 /// Flips of triangles without area are followed by refining, and that by flips, this often.
 const SLIVER_PASSES: u32 = 3;
@@ -102,6 +100,7 @@ impl<'a> Prover<'a> {
             scratch: Vec::new(),
             sampled,
             accept,
+            looks_closer: options.strategy == Strategy::Default,
             hopeless: false,
         }
     }
@@ -266,15 +265,6 @@ impl<'a> Prover<'a> {
         }
     }
 
-    /// How far an edge is from the surface by itself: where that is little, what is wrong, or not known, lies inside the facet.
-    fn chord_error(&mut self, facet: &Facet, i: usize) -> f64 {
-        if self.sampled {
-            return f64::INFINITY;
-        }
-        let ends = [(i + 1) % 3, (i + 2) % 3];
-        chord_bound(self.bounds, ends.map(|k| facet.uv[k]), ends.map(|k| facet.xyz[k]), &mut self.scratch)
-    }
-
     /// A triangle whose corners are not three vertices is not written.
     fn collapsed(work: &FaceWork<'_, '_>, t: u32) -> bool {
         let [a, b, c] = work.mesh.triangles[t as usize].map(|v| work.key(v));
@@ -314,7 +304,7 @@ impl<'a> Prover<'a> {
         if bound.error > tolerance {
             let coarse = (0..3).filter(|&i| boundary[i] && bound.edges[i] > tolerance);
             let worst = coarse.max_by(|&a, &b| bound.edges[a].total_cmp(&bound.edges[b]));
-            let worst = worst.filter(|&i| self.chord_error(&facet, i) > FINE_CHORD * tolerance);
+            let worst = worst.filter(|&i| self.is_coarse_chord(&facet, i, tolerance));
             let worst = worst.or_else(|| close_to_boundary(work, &facet, boundary, FOLD_HEIGHT * tolerance));
             return (bound.error, worst.map_or(Fault::Inside(None), Fault::Edge));
         }
@@ -453,29 +443,6 @@ fn longest_inner(work: &FaceWork<'_, '_>, t: u32, facet: &Facet) -> Option<usize
     let inner = (0..3).filter(|&i| work.mesh.neighbors[t as usize][i] != NONE);
     let length = |i: usize| facet.xyz[(i + 1) % 3].distance_squared(facet.xyz[(i + 2) % 3]);
     clearly_longest(inner, length)
-}
-
-/// A bent boundary edge whose image on the surface passes the corner opposite to it nearer than this: what is wrong with the facet
-/// is the chord's, and no point inside helps.
-fn close_to_boundary(
-    work: &FaceWork<'_, '_>,
-    facet: &Facet,
-    boundary: [bool; 3],
-    distance: f64,
-) -> Option<usize> {
-    (0..3).filter(|&i| boundary[i]).find(|&i| {
-        let [p, a, b] = [0, 1, 2].map(|k| facet.uv[(i + k) % 3]);
-        let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        let height = work.context.surface.point(a.lerp(b, along)).distance(facet.xyz[i]);
-        height <= distance && bend(work, facet, i) > CHORD_BENDS * height
-    })
-}
-
-/// How far the surface leaves the middle of the edge opposite corner `i`.
-fn bend(work: &FaceWork<'_, '_>, facet: &Facet, i: usize) -> f64 {
-    let [a, b] = [1, 2].map(|k| (i + k) % 3);
-    let middle = work.context.surface.point(facet.uv[a].midpoint(facet.uv[b]));
-    middle.distance(facet.xyz[a].midpoint(facet.xyz[b]))
 }
 
 /// The longest; of those that only rounding tells apart the first, so that the same part elsewhere gets the same mesh.
