@@ -81,3 +81,16 @@ fn nothing_to_mesh_is_an_error_that_says_so() {
     let sentence = error.to_string();
     assert!(sentence.contains("wireframe_only.step") && !sentence.contains('\n'), "{sentence}");
 }
+
+/// Two arcs that leave a corner in one direction: chords of equal steps lie on one line, and the triangle between them has no area.
+#[test]
+fn no_corner_stays_shut() {
+    for percent in [0.2, 0.5, 1.0, 2.0, 5.0] {
+        for angle in [None, Some(10f64.to_radians()), Some(20f64.to_radians())] {
+            let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent)).with_angle(angle);
+            let report =
+                chordal::run(&Job::new(corpus("crescent")).with_options(options)).expect("a mesh").report;
+            assert!(report.clean, "{percent} %, {angle:?}: {:?}", report.undone);
+        }
+    }
+}

@@ -7,6 +7,8 @@
 //! pipeline yields are parameters on the one shared edge. Every chord is then proven against the model's own curve as
 //! any other, so a file whose curves in the plane are loose costs chords and not the promise.
 
+#[cfg(test)]
+mod budget_tests;
 mod curve;
 mod in_plane;
 mod in_space;

@@ -4,9 +4,22 @@
 //! surface is quartered until its error is within ε = κ/3; the curve is cut at the borders of the leaves, and over each leaf it
 //! may lie δ = (κ − 2ε)/‖bl‖ from its chord, lengths counted in the leaf's own parameters. Only leaves under the curve
 //! are made.
+//!
+//! The document adds up the surface at two points of the plane. The sum holds for the chord in space, too: with E the distance of leaf
+//! and bilinear surface at equal parameters and T the twist,
+//!
+//! ```text
+//! curve – bilinear surface over it      E
+//! there – over the chord in the plane   ‖bl‖ δ = κ/3
+//! there – the chord in space            ¼‖T‖, its ends off the surface by E
+//!                                       2E + ¼‖T‖ + κ/3 ≤ κ      as E + ¼‖T‖ ≤ ε
+//! ```
+//!
+//! The document's Lemma 2 bounds E for polynomial leaves only. Over rational ones points slide along the bilinear surface by as much
+//! as weights differ, so E is bounded with them ([`off_bilinear`]).
 
 use super::curve::TrimmingCurve;
-use crate::strategy::node::{Flatness, Measure};
+use crate::strategy::node::{Bilinear, off_bilinear};
 use crate::strategy::quadtree::{SURFACE_SHARE, norm};
 use chordal_nurbs::{
     BezierCurve, BezierPatch, ChordCriterion, ChordCut, DVec2, DVec3, LiftOptions, NurbsSurface, Range, UvBox,
@@ -59,7 +72,8 @@ impl Descent {
         depth: u32,
     ) -> Option<()> {
         let whole = over_unit_square(patch)?;
-        let is_flat = Flatness::new(&whole, Measure::Conservative).error <= SURFACE_SHARE * self.tolerance;
+        let error = off_bilinear(&whole) + 0.25 * Bilinear::new(&whole).twist().length();
+        let is_flat = error <= SURFACE_SHARE * self.tolerance;
         if is_flat || depth >= DEEPEST {
             let share = (1.0 - 2.0 * SURFACE_SHARE) * self.tolerance / norm(&whole);
             let t = curve.flattened(share, ChordCriterion::Line, ChordCut::Midpoint)?;

@@ -3,11 +3,13 @@
 //! Patches of degree 1 to 20, half of them rational with weights from 1e-3 to 1e3, wild ones and sheets with a little relief.
 
 use super::derivatives::SecondNorms;
-use super::node::{Bilinear, Flatness, Measure};
+use super::node::{Bilinear, Flatness, Measure, off_bilinear};
 use super::projected::projected_error;
 use super::quadtree::{norm, norm_by_edges};
 use super::testing::{distance_to_halves, distance_to_triangle, patch, patches};
-use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
+use chordal_nurbs::{
+    DVec2, DVec3, Facet, NurbsSurface, Surface, SurfaceBounds, UvBox, chord_bound, facet_bound,
+};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -21,7 +23,7 @@ fn twisted(corners: &[(f64, f64, f64)]) -> NurbsSurface {
 }
 
 /// The largest distance of a patch from the bilinear surface through its corners, at equal parameters.
-fn off_bilinear(s: &NurbsSurface, n: usize) -> f64 {
+fn largest_off_bilinear(s: &NurbsSurface, n: usize) -> f64 {
     let bilinear = Bilinear::new(s);
     grid(n).fold(0.0, |m: f64, uv| m.max(s.point(uv).distance(bilinear.at(uv))))
 }
@@ -55,13 +57,44 @@ proptest! {
     fn lemma_2_bounds_the_distance_from_the_bilinear_surface(s in patches()) {
         let f = Flatness::new(&s, Measure::Conservative);
         let allowed = if s.weights().is_some() { f.error } else { f.bilinear };
-        let found = off_bilinear(&s, 16);
+        let found = largest_off_bilinear(&s, 16);
         // A rational patch slides along the bilinear surface: there the nearest point counts, not the one at equal parameters.
         if s.weights().is_none() {
             prop_assert!(found <= allowed * (1.0 + 1e-9) + 1e-12, "{found} > {allowed}");
         }
         let halves = distance_to_halves(&s, 12);
         prop_assert!(halves <= f.error * (1.0 + 1e-9) + 1e-12, "{halves} > {}", f.error);
+    }
+
+    /// What takes the place of Lemma 2 where parameters count: never below what is found at equal ones, whatever the weights, and never
+    /// above Lemma 2 without them.
+    #[test]
+    fn the_bilinear_surface_is_as_near_at_equal_parameters(s in patches()) {
+        let bound = off_bilinear(&s);
+        let found = largest_off_bilinear(&s, 16);
+        prop_assert!(found <= bound * (1.0 + 1e-9) + 1e-12, "{found} > {bound}");
+        let weighted = NurbsSurface::new(
+            s.degree(), s.knots_u().to_vec(), s.knots_v().to_vec(), s.points().to_vec(), Some(vec![2.5; s.points().len()]),
+        ).expect("legal");
+        let lemma_2 = Flatness::new(&weighted, Measure::Conservative).bilinear;
+        prop_assert!(off_bilinear(&weighted) <= lemma_2 * (1.0 + 1e-12));
+    }
+
+    /// Facets over a leaf that is cut by a curve: any triangle with its corners on the leaf is within 2E + ¼‖T‖ at equal parameters.
+    #[test]
+    fn any_triangle_over_a_leaf_is_within_twice_its_share(
+        s in patches(),
+        corners in prop::array::uniform3((0.0f64..=1.0, 0.0f64..=1.0)),
+    ) {
+        let bound = 2.0 * off_bilinear(&s) + 0.25 * Bilinear::new(&s).twist().length();
+        let uv = corners.map(DVec2::from);
+        let xyz = uv.map(|p| s.point(p));
+        for (i, j) in (0..=12).flat_map(|i| (0..=12 - i).map(move |j| (i, j))) {
+            let w = [f64::from(i) / 12.0, f64::from(j) / 12.0, f64::from(12 - i - j) / 12.0];
+            let p = s.point(uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2]);
+            let off = p.distance(xyz[0] * w[0] + xyz[1] * w[1] + xyz[2] * w[2]);
+            prop_assert!(off <= bound * (1.0 + 1e-9) + 1e-12, "{off} > {bound}");
+        }
     }
 
     /// The grid's bound of both halves, over a patch of any degree.
@@ -105,46 +138,143 @@ fn rational_patches_need_half_the_twist() {
     assert!(worst > 0.3 && worst <= 0.5, "{worst}");
 }
 
+/// Equation 3 of Kahlesz, Balázs, Klein 2001 looks at one corner: where all sides leave it together and the opposite corner lies behind
+/// it, the map stretches 2 + √2 times as much at that corner, and never more than that.
+#[test]
+fn equation_3_is_too_small_by_two_and_the_root_of_two_at_most() {
+    let back = -std::f64::consts::SQRT_2;
+    let worst = twisted(&[(0., 0., 0.), (1., 0., 0.), (1., 0., 0.), (back, 0., 0.)]);
+    let most = 2.0 - back;
+    assert!((norm_by_edges(&worst) - 1.0).abs() < 1e-15);
+    assert!((norm(&worst) - most).abs() < 1e-12, "{}", norm(&worst));
+    let mut runner = TestRunner::deterministic();
+    for _ in 0..2000 {
+        let s = patches().new_tree(&mut runner).expect("a patch").current();
+        assert!(norm(&s) <= most * norm_by_edges(&s) * (1.0 + 1e-12));
+    }
+}
+
+const KINDS: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
+
+/// Which of the kinds a patch is: rational, of a degree over 4.
+fn kind(s: &NurbsSurface) -> usize {
+    let high = s.degree()[0].max(s.degree()[1]) > 4;
+    KINDS.iter().position(|&k| k == (s.weights().is_some(), high)).expect("all kinds")
+}
+
+/// A row per kind with the median and the 95th percentile of every column.
+fn print_quantiles<const N: usize>(columns: [&str; N], ratios: &[Vec<[f64; N]>]) {
+    println!("| patches | {} |\n|{}", columns.join(" | "), "---|".repeat(N + 1));
+    for ((rational, high), of_kind) in KINDS.into_iter().zip(ratios) {
+        let column = |c: usize| {
+            let mut all: Vec<f64> = of_kind.iter().map(|r| r[c]).collect();
+            all.sort_unstable_by(f64::total_cmp);
+            let at = |share: f64| all[((all.len() - 1) as f64 * share) as usize];
+            let shown = |x: f64| if x < 1e4 { format!("{x:.2}") } else { format!("{x:.0e}") };
+            format!("{} / {}", shown(at(0.5)), shown(at(0.95)))
+        };
+        let name = if rational { "rational" } else { "polynomial" };
+        let degrees = if high { "to 20" } else { "1 to 4" };
+        let cells: Vec<String> = (0..N).map(column).collect();
+        println!("| {name}, degree {degrees} | {} |", cells.join(" | "));
+    }
+}
+
 /// How tight bounds are: the bound over what was found, median and 95th percentile. Run with `--ignored --nocapture`; the table
 /// stands in docs/strategies.md.
 #[test]
 #[ignore = "prints a table, tests nothing"]
 fn tightness() {
     let mut runner = TestRunner::deterministic();
-    let kinds = [(false, false), (false, true), (true, false), (true, true)];
-    let mut ratios: Vec<Vec<[f64; 4]>> = vec![Vec::new(); kinds.len()];
+    let mut ratios: Vec<Vec<[f64; 5]>> = vec![Vec::new(); KINDS.len()];
     for _ in 0..1500 {
         let s = patches().new_tree(&mut runner).expect("a patch").current();
         let found = distance_to_halves(&s, 12);
-        if found < 1e-9 {
+        let at_equal = largest_off_bilinear(&s, 16);
+        if found < 1e-9 || at_equal < 1e-9 {
             continue;
         }
-        let high = s.degree()[0].max(s.degree()[1]) > 4;
-        let kind = kinds.iter().position(|&k| k == (s.weights().is_some(), high)).expect("all kinds");
-        ratios[kind].push([
+        ratios[kind(&s)].push([
             Flatness::new(&s, Measure::Conservative).error / found,
             projected_error(&s, Measure::Conservative) / found,
             SecondNorms::of_surface(&s).error(1.0, 1.0) / found,
+            off_bilinear(&s) / at_equal,
             norm(&s) / norm_by_edges(&s),
         ]);
     }
-    println!("| patches | Lemmas 1 and 2 | projected net | second derivatives | ‖bl‖ over equation 3 |");
-    println!("|---|---|---|---|---|");
-    for ((rational, high), of_kind) in kinds.into_iter().zip(&ratios) {
-        let column = |c: usize| {
-            let mut all: Vec<f64> = of_kind.iter().map(|r| r[c]).collect();
-            all.sort_unstable_by(f64::total_cmp);
-            let at = |share: f64| all[((all.len() - 1) as f64 * share) as usize];
-            format!("{:.2} / {:.2}", at(0.5), at(0.95))
-        };
-        println!(
-            "| {}, degree {} | {} | {} | {} | {} |",
-            if rational { "rational" } else { "polynomial" },
-            if high { "to 20" } else { "1 to 4" },
-            column(0),
-            column(1),
-            column(2),
-            column(3)
-        );
+    let columns = [
+        "Lemmas 1 and 2",
+        "projected net",
+        "second derivatives",
+        "E at equal parameters",
+        "‖bl‖ over equation 3",
+    ];
+    print_quantiles(columns, &ratios);
+}
+
+/// The same for triangles of any shape, whole ones and such of 1/16 and 1/256 of the patch's side: the proof of facets, second
+/// derivatives over their boxes, and 2E + ¼‖T‖ of the whole patch; and for chords, in one part and in eight.
+#[test]
+#[ignore = "prints a table, tests nothing"]
+fn tightness_for_triangles() {
+    let mut runner = TestRunner::deterministic();
+    let corners = prop::array::uniform4((0.0f64..=1.0, 0.0f64..=1.0));
+    for size in [1.0, 1.0 / 16.0, 1.0 / 256.0] {
+        let mut ratios: Vec<Vec<[f64; 5]>> = vec![Vec::new(); KINDS.len()];
+        for _ in 0..1500 {
+            let s = patches().new_tree(&mut runner).expect("a patch").current();
+            let [from, corners @ ..] =
+                corners.new_tree(&mut runner).expect("corners").current().map(DVec2::from);
+            let uv = corners.map(|c| from * (1.0 - size) + c * size);
+            if let Some(row) = of_triangle(&s, uv) {
+                ratios[kind(&s)].push(row);
+            }
+        }
+        println!("triangles of size {size}");
+        let columns = ["proof", "second derivatives of the box", "2E + ¼‖T‖", "chord", "chord in 8 parts"];
+        print_quantiles(columns, &ratios);
     }
+}
+
+/// Each bound over what was found for one triangle; none where it is a sliver or flat.
+fn of_triangle(s: &NurbsSurface, mut uv: [DVec2; 3]) -> Option<[f64; 5]> {
+    let area = (uv[1] - uv[0]).perp_dot(uv[2] - uv[0]);
+    let b = UvBox::from_points(uv);
+    if area < 0.0 {
+        uv.swap(1, 2);
+    }
+    let xyz = uv.map(|p| s.point(p));
+    let chord = |i: usize| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let off = |n: i32| {
+            let p = s.point(uv[j].lerp(uv[k], f64::from(n) / 64.0));
+            distance_to_triangle(p, [xyz[j], xyz[k], xyz[k]])
+        };
+        (0..=64).map(off).fold(0.0, f64::max)
+    };
+    let sag = [0, 1, 2].map(chord);
+    let mut found = 0.0f64;
+    for (i, j) in (0..=16).flat_map(|i| (0..=16 - i).map(move |j| (i, j))) {
+        let w = [i, j, 16 - i - j].map(|k| f64::from(k) / 16.0);
+        let p = s.point(uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2]);
+        found = found.max(distance_to_triangle(p, xyz));
+    }
+    if area.abs() < 0.05 * b.size().x * b.size().y || found < 1e-9 || sag[0] < 1e-9 {
+        return None;
+    }
+    let surface = Surface::Nurbs(s.clone());
+    let bounds = SurfaceBounds::new(&surface, b, found);
+    let mut scratch = Vec::new();
+    let facet = Facet { uv, xyz, sag: sag.map(Some) };
+    let whole = 2.0 * off_bilinear(s) + 0.25 * Bilinear::new(s).twist().length();
+    let mut chord =
+        |parts: usize| chord_bound(&bounds, [uv[1], uv[2]], [xyz[1], xyz[2]], parts, &mut scratch) / sag[0];
+    let chords = [chord(1), chord(8)];
+    Some([
+        facet_bound(&bounds, &facet, found, &mut scratch).error / found,
+        SecondNorms::of_surface(s).error(b.size().x, b.size().y) / found,
+        whole / found,
+        chords[0],
+        chords[1],
+    ])
 }

@@ -77,25 +77,30 @@ impl<'m> Constrained<'m> {
         Some(end)
     }
 
-    /// The triangles around a vertex.
-    fn star(&self, v: u32) -> Vec<(u32, usize)> {
-        let corner = |t: u32| self.mesh.triangles[t as usize].iter().position(|&c| c == v);
-        let mut star = Vec::with_capacity(8);
+    /// The triangles around a vertex, each with the vertex's corner: one way round from the one that is known, then the other.
+    fn star(&self, v: u32) -> Star<'_> {
         let first = self.incident[v as usize];
-        for turn in [1, 2] {
-            let mut t = first;
-            while t != NONE {
-                let Some(i) = corner(t) else { break };
-                if !(turn == 2 && t == first) {
-                    star.push((t, i));
-                }
-                t = self.mesh.neighbors[t as usize][(i + turn) % 3];
-                if t == first {
-                    return star;
-                }
+        Star { mesh: &*self.mesh, vertex: v, first, at: first, turn: 1 }
+    }
+
+    /// The triangle with the directed edge p → q, and the corner opposite to it. Walks around both ends at once: one of them may have
+    /// thousands of triangles, where the crossings of borders with a long chord moved to its end.
+    fn find_edge(&self, p: u32, q: u32) -> Option<(u32, usize)> {
+        let (mut around_p, mut around_q) = (self.star(p), self.star(q));
+        loop {
+            let (t, i) = around_p.next()?;
+            if self.mesh.triangles[t as usize][(i + 1) % 3] == q {
+                return Some((t, (i + 2) % 3));
+            }
+            let (t, i) = around_q.next()?;
+            if self.mesh.triangles[t as usize][(i + 2) % 3] == p {
+                return Some((t, (i + 1) % 3));
             }
         }
-        star
+    }
+
+    fn is_edge(&self, a: u32, b: u32) -> bool {
+        self.find_edge(a, b).or_else(|| self.find_edge(b, a)).is_some()
     }
 
     fn side(&self, a: u32, b: u32, v: u32) -> f64 {
@@ -105,14 +110,10 @@ impl<'m> Constrained<'m> {
 
     fn ahead(&self, a: u32, b: u32) -> Ahead {
         let point = |v: u32| self.mesh.points[v as usize];
-        let star = self.star(a);
-        for &(t, i) in &star {
-            let c = self.mesh.triangles[t as usize];
-            if c[(i + 1) % 3] == b || c[(i + 2) % 3] == b {
-                return Ahead::Edge;
-            }
+        if self.is_edge(a, b) {
+            return Ahead::Edge;
         }
-        for &(t, i) in &star {
+        for (t, i) in self.star(a) {
             let c = self.mesh.triangles[t as usize];
             let (p, q) = (c[(i + 1) % 3], c[(i + 2) % 3]);
             let (right, left) = (self.side(a, b, p), self.side(a, b, q));
@@ -160,14 +161,6 @@ impl<'m> Constrained<'m> {
         None
     }
 
-    /// The triangle with the directed edge p → q, and the corner opposite to it.
-    fn find_edge(&self, p: u32, q: u32) -> Option<(u32, usize)> {
-        self.star(p).into_iter().find_map(|(t, i)| {
-            let c = self.mesh.triangles[t as usize];
-            (c[(i + 1) % 3] == q).then_some((t, (i + 2) % 3))
-        })
-    }
-
     fn flip_away(&mut self, mut crossed: VecDeque<(u32, u32)>, a: u32, b: u32) -> Option<()> {
         let mut left = 64 + 16 * crossed.len() * crossed.len().min(1000);
         while let Some((p, q)) = crossed.pop_front() {
@@ -201,6 +194,45 @@ impl<'m> Constrained<'m> {
             }
         }
         self.mesh.changed.clear();
+    }
+}
+
+/// Walks around a vertex.
+struct Star<'m> {
+    mesh: &'m Triangulation,
+    vertex: u32,
+    first: u32,
+    /// The next triangle.
+    at: u32,
+    /// 1, then 2 where a border was met.
+    turn: usize,
+}
+
+impl Iterator for Star<'_> {
+    type Item = (u32, usize);
+
+    fn next(&mut self) -> Option<(u32, usize)> {
+        loop {
+            let corner = |t: u32| self.mesh.triangles[t as usize].iter().position(|&c| c == self.vertex);
+            let found = (self.at != NONE).then(|| corner(self.at)).flatten();
+            match found {
+                Some(i) => {
+                    let t = self.at;
+                    self.at = self.mesh.neighbors[t as usize][(i + self.turn) % 3];
+                    // All the way round.
+                    if self.at == self.first {
+                        (self.at, self.turn) = (NONE, 2);
+                    }
+                    return Some((t, i));
+                }
+                None if self.turn == 1 => {
+                    self.turn = 2;
+                    let i = (self.first != NONE).then(|| corner(self.first)).flatten()?;
+                    self.at = self.mesh.neighbors[self.first as usize][(i + 2) % 3];
+                }
+                None => return None,
+            }
+        }
     }
 }
 

@@ -121,7 +121,10 @@ pub(crate) fn across_longer_side(piece: &NurbsSurface) -> Split {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::strategy::testing::patches;
     use chordal_nurbs::DVec3;
+    use proptest::strategy::{Strategy, ValueTree};
+    use proptest::test_runner::TestRunner;
 
     /// z = height(u) on degree (3, 1), u and x equal.
     fn sheet(heights: [f64; 4], swap: bool) -> NurbsSurface {
@@ -157,6 +160,48 @@ mod tests {
                 assert!(rule.cuts(&piece, 2.0, Measure::Conservative).is_empty());
             }
         }
+    }
+
+    /// DESIGN 4: the worst point is argmax ‖P_kl − B(k/m, l/n)‖; it is cut at k/m or at l/n, whichever line, once it is a border of
+    /// two nodes, has its bilinear approximation nearer to S(k/m, l/n).
+    #[test]
+    fn the_worst_point_and_the_direction_are_the_documents() {
+        let mut runner = TestRunner::deterministic();
+        let (mut seen, mut along) = (0, [0, 0]);
+        while seen < 400 {
+            let piece = patches().new_tree(&mut runner).expect("a patch").current();
+            let [m, n] = piece.degree();
+            if piece.weights().is_some() || m < 2 || n < 2 {
+                continue;
+            }
+            seen += 1;
+            let p = piece.points();
+            let corner = |i: usize, j: usize| p[i * m * (n + 1) + j * n];
+            let bilinear = |u: f64, v: f64| {
+                (corner(0, 0) * (1.0 - v) + corner(0, 1) * v) * (1.0 - u)
+                    + (corner(1, 0) * (1.0 - v) + corner(1, 1) * v) * u
+            };
+            let at = |k: usize| [(k / (n + 1)) as f64 / m as f64, (k % (n + 1)) as f64 / n as f64];
+            let off = |k: &usize| p[*k].distance(bilinear(at(*k)[0], at(*k)[1]));
+            let worst = (0..p.len()).max_by(|a, b| off(a).total_cmp(&off(b))).expect("points");
+            let [u, v] = at(worst);
+            let s = |u: f64, v: f64| piece.point(DVec2::new(u, v));
+            // The border's bilinear approximation is the chord between its ends on the surface.
+            let by_u = s(u, 0.0).lerp(s(u, 1.0), v).distance(s(u, v));
+            let by_v = s(0.0, v).lerp(s(1.0, v), u).distance(s(u, v));
+            let inside = |t: f64| t > SIDE && t < 1.0 - SIDE;
+            let axis = match (inside(u), inside(v)) {
+                (true, false) => 0,
+                (false, true) => 1,
+                _ => usize::from(by_v < by_u),
+            };
+            along[axis] += 1;
+            let cuts = Kd(Cut::WorstPoint).cuts(&piece, 1e-9, Measure::Conservative);
+            assert_eq!(cuts.len(), 1);
+            assert_eq!(cuts[0].axis, axis);
+            assert!((cuts[0].at - [u, v][axis]).abs() < 1e-12);
+        }
+        assert!(along[0] > 50 && along[1] > 50, "{along:?}");
     }
 
     #[test]

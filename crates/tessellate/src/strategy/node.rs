@@ -10,6 +10,14 @@
 //! ```
 //!
 //! The *estimated* error puts S(ξ_i, η_j) in place of P_ij: a sample, no bound.
+//!
+//! These bound shapes: the points of a rational piece slide along the bilinear surface. Where points are compared at equal parameters
+//! ([`off_bilinear`]), w (S − B) in Bernstein form of degree (m + 1, n + 1) takes the place of Lemma 2:
+//!
+//! ```text
+//! Q_{i+a, j+b} += c_ia c_jb w_ij (P_ij − B_ab)      W_{i+a, j+b} += c_ia c_jb w_ij      a, b ∈ {0, 1}, B_ab the corners
+//! c_i0 = (m + 1 − i)/(m + 1)    c_i1 = (i + 1)/(m + 1)      ‖S − B‖ ≤ max ‖Q‖/W
+//! ```
 
 use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
 
@@ -98,6 +106,32 @@ impl Flatness {
         found.error = found.bilinear + share * bilinear.twist().length();
         found
     }
+}
+
+/// How far a Bézier piece lies from the bilinear surface through its corners, at equal parameters, at most; infinite where weights
+/// are not positive.
+pub(crate) fn off_bilinear(piece: &NurbsSurface) -> f64 {
+    let Some(weights) = piece.weights() else { return Flatness::new(piece, Measure::Conservative).bilinear };
+    if !weights.iter().all(|&w| w > 0.0) {
+        return f64::INFINITY;
+    }
+    let [rows, columns] = piece.counts();
+    let corners = Bilinear::new(piece).corners;
+    let share = |i: usize, a: usize, rows: usize| {
+        let numerator = if a == 0 { rows - i } else { i + 1 };
+        numerator as f64 / rows as f64
+    };
+    let mut sums = vec![(DVec3::ZERO, 0.0); (rows + 1) * (columns + 1)];
+    for (k, (&p, &w)) in piece.points().iter().zip(weights).enumerate() {
+        let (i, j) = (k / columns, k % columns);
+        for (a, b) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let w = w * share(i, a, rows) * share(j, b, columns);
+            let sum = &mut sums[(i + a) * (columns + 1) + j + b];
+            sum.0 += w * (p - corners[a + 2 * b]);
+            sum.1 += w;
+        }
+    }
+    sums.into_iter().fold(0.0, |worst: f64, (q, w)| worst.max(q.length() / w))
 }
 
 /// How far lines of the net stray from their chords: the distance, and the abscissa where it is largest.

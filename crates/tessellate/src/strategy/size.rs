@@ -73,9 +73,26 @@ pub(crate) fn oversized(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strategy::testing::{distance_to_triangle, patches};
-    use chordal_nurbs::UvBox;
+    use crate::strategy::testing::{distance_to_triangle, patch, patches};
+    use chordal_nurbs::{DVec3, UvBox};
     use proptest::prelude::*;
+
+    /// z = u²/2 over a triangle that is no half of its box: its lowest side is ⅛ off in its middle, all that the bound of its
+    /// box allows.
+    #[test]
+    fn a_triangle_of_any_shape_reaches_the_bound_of_its_box() {
+        // Wide, so that heights are distances.
+        let wide = 1e5;
+        let rows = [(0.0, 0.0), (0.5, 0.0), (1.0, 0.5)];
+        let points = rows.iter().flat_map(|&(u, z)| [0.0, 1.0].map(|v| DVec3::new(wide * u, wide * v, z)));
+        let s = patch([2, 1], points.collect(), None);
+        let uv = [(0.0, 0.2), (1.0, 0.2), (0.3, 0.2 + 1e-3)].map(DVec2::from);
+        let b = UvBox::from_points(uv);
+        let bound = SecondNorms::of_surface(&s).error(b.size().x, b.size().y);
+        let off = distance_to_triangle(s.point(DVec2::new(0.5, 0.2)), uv.map(|p| s.point(p)));
+        assert!((off - 0.125).abs() < 1e-6, "{off}");
+        assert!((bound - 0.125).abs() < 1e-12, "{bound}");
+    }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]
