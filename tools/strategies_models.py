@@ -28,6 +28,10 @@ from measure_models import SUFFIXES, Meshing, Settings, expected_faces, measure_
 from measure_row import row_of
 
 
+# The share of splines among the faces of a free-form model.
+SPLINES = 0.1
+
+
 @dataclass
 class Line:
     """One model by one strategy with one bound."""
@@ -45,6 +49,7 @@ class Line:
     measured: float | None = None
     closed: bool | None = None
     failed: int | None = None
+    kind: str = ""
     faults: tuple[str, ...] = ()
 
 
@@ -118,10 +123,23 @@ def measure(model: Path, names: list[str], args: argparse.Namespace, expected: d
         if not args.keep:
             run.mesh.unlink(missing_ok=True)
     lines = [line_of(name, bound, run, measured.get(str(run.mesh)), expected.get(model.name)) for name, bound, run in runs]
+    kind = next((kind_of(run.report) for name, _, run in runs if name == "default" and run.report.exists()), "")
+    for line in lines:
+        line.kind = kind
     judge(lines)
     bad = [f"{line.strategy} {line.bound}: {', '.join(line.faults)}" for line in lines if line.faults]
     print(f"{model.name}: {'; '.join(bad) or 'ok'}", file=sys.stderr, flush=True)
     return lines
+
+
+def kind_of(report: Path) -> str:
+    """The class of a model by its faces: a single one; a tenth or more of them splines; or neither."""
+    faces = json.loads(report.read_text())["face_list"]
+    splines = sum(face["instances"] for face in faces if face["kind"] == "nurbs")
+    whole = sum(face["instances"] for face in faces)
+    if whole == 1:
+        return "single face"
+    return "free-form" if splines >= SPLINES * whole else "mechanical"
 
 
 def known_measurements(model: Path, runs: list[Meshing], args: argparse.Namespace) -> dict[str, dict]:
@@ -214,7 +232,26 @@ def table(lines: list[Line], names: list[str], args: argparse.Namespace) -> str:
         share = f"{line.proven / line.tolerance:.3f}" if line.proven is not None and line.tolerance else ""
         far = f"{line.measured / (line.tolerance + line.gap):.3f}" if line.measured is not None else ""
         out.append(f"| {line.model} | {line.strategy} | {line.bound} | {', '.join(line.faults)} | {share} | {far} |")
-    return "\n".join([*out, *fewer(lines)]) + "\n"
+    return "\n".join([*out, *classes(lines, names), *fewer(lines)]) + "\n"
+
+
+def classes(lines: list[Line], names: list[str]) -> list[str]:
+    """Triangles by class of model, over the models that every strategy proves."""
+    proven = [line for line in lines if line.bound == "proven" and line.proven is not None and line.proven <= line.tolerance]
+    by = {(line.model, line.strategy): line for line in proven}
+    models = sorted({line.model for line in proven if all((line.model, name) in by for name in names)})
+    kind = {model: by[model, names[0]].kind for model in models}
+    kinds = [k for k in ("mechanical", "free-form", "single face") if k in kind.values()]
+    head = " | ".join(f"{k} ({sum(v == k for v in kind.values())})" for k in kinds)
+    out = ["", "## Triangles by class, all proven", "",
+           f"Sums over the {len(models)} models that every strategy proves. *Free-form*: at least {SPLINES:.0%} of the faces are splines; *single face*: one face; "
+           "*mechanical*: all others.", "", f"| strategy | {head} |", "|---|" + "---|" * len(kinds)]
+    sums = {name: [sum(by[m, name].triangles for m in models if kind[m] == k) for k in kinds] for name in names}
+    least = [min(column) for column in zip(*sums.values())]
+    for name in names:
+        cells = [f"**{n:,}**" if n == low else f"{n:,}" for n, low in zip(sums[name], least)]
+        out.append(f"| {name} | " + " | ".join(cells) + " |")
+    return out
 
 
 def fewer(lines: list[Line]) -> list[str]:
@@ -250,7 +287,7 @@ def summary(own: list[Line], everywhere: set[str]) -> str:
 
 def tsv(lines: list[Line]) -> str:
     columns = ["model", "strategy", "bound", "exit", "seconds", "triangles", "ratio", "tolerance", "proven", "gap", "measured",
-               "closed", "failed", "faults"]
+               "closed", "failed", "kind", "faults"]
     def cell(value: object) -> str:
         if value is None:
             return ""

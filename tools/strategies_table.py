@@ -20,14 +20,14 @@ CLASSES = {
     "free-form": ["trj8_k1-db-214.stp", "ec_exhaust-A.stp", "fusee.stp"],
     "single face": ["corpus/spline_ball.step", "corpus/torus_full.step", "corpus/sphere_side_cut.step"],
 }
-STRATEGIES = ["default", "kd-midpoint", "kd-worst", "binary-midpoint", "recursive", "quadtree", "bezier", "coving",
-              "delaunay-uniform", "delaunay-adaptive"]
+STRATEGIES = ["default", "kd-midpoint", "kd-worst", "binary-midpoint", "binary-worst", "grid", "cells", "recursive", "quadtree",
+              "quadtree-eq3", "bezier", "coving", "delaunay-uniform", "delaunay-adaptive"]
 REMARKS = "## Beside the figures"
 
 
 def main() -> int:
     args = arguments()
-    tables, fewest, compared = [], [], {}
+    tables, fewest, compared, kinds = [], [], {}, {}
     for kind, names in CLASSES.items():
         for name in names:
             path = Path(name) if name.startswith("corpus/") else next(args.models.rglob(name), None)
@@ -36,11 +36,12 @@ def main() -> int:
                 continue
             print(path.name, file=sys.stderr, flush=True)
             compared[path.name] = result = compare(path, args)
+            kinds.setdefault(kind, []).append(result)
             tables += table(path.name, kind, result)
             fewest.append(best(path.name, kind, result))
     old = args.output.read_text(encoding="utf-8") if args.output.exists() else ""
     remarks = old[old.index(REMARKS):].splitlines() if REMARKS in old else []
-    text = [*head(args), *summary(fewest), *ratios(compared), *tables, *remarks]
+    text = [*head(args), *by_class(kinds), *summary(fewest), *ratios(compared), *tables, *remarks]
     args.output.write_text("\n".join(text).rstrip() + "\n", encoding="utf-8")
     return 0
 
@@ -83,6 +84,21 @@ def best(name: str, kind: str, result: dict) -> tuple:
     default = next((row for row in rows if row["strategy"] == "default"), None)
     others = [row for row in rows if row["strategy"] != "default"]
     return name, kind, default, others[0] if others else None
+
+
+def by_class(kinds: dict[str, list[dict]]) -> list[str]:
+    """Sums of proven triangles; a strategy that does not prove a model has none in its class."""
+    out = ["## Triangles by class, all proven", "", f"| strategy | {' | '.join(kinds)} |", "|---|" + "---|" * len(kinds)]
+    sums = {}
+    for name in STRATEGIES:
+        rows = [[next((r["triangles"] for r in proven(result) if r["strategy"] == name), None) for result in results]
+                for results in kinds.values()]
+        sums[name] = [None if None in row else sum(row) for row in rows]
+    least = [min(n for n in column if n is not None) for column in zip(*sums.values())]
+    for name, row in sums.items():
+        cells = ["not proven" if n is None else f"**{n:,}**" if n == low else f"{n:,}" for n, low in zip(row, least)]
+        out.append(f"| {name} | {' | '.join(cells)} |")
+    return [*out, ""]
 
 
 def summary(fewest: list[tuple]) -> list[str]:
