@@ -175,6 +175,30 @@ fn transparent_pictures_have_no_dark_borders() {
     }
 }
 
+/// Of a box that is seen through, front and back cover what the opacity of both says, whatever the order of drawing.
+#[test]
+fn what_is_not_opaque_is_seen_through() {
+    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    let options = small().with_lines(false).with_background(Background::Transparent);
+    for opacity in [0.25, 0.5, 0.7] {
+        let mut outcome = meshed("styles.step", 0.1);
+        for part in &mut outcome.scene.parts {
+            part.face_colors.fill(Some([0.8, 0.2, 0.1, opacity]));
+        }
+        let (exact, _) = renderer.render_exact(gpu(), &faces, &mut on_device(&outcome), &options).unwrap();
+        let texture = options.with_trim(Trim::Texture);
+        let (textured, _) = renderer.render_exact(gpu(), &faces, &mut on_device(&outcome), &texture).unwrap();
+        for picture in [exact, textured, drawn(&outcome, &options)] {
+            // Well within the picture of the box, 8 × 8 of the patterns.
+            let (w, h) = (picture.width as usize, picture.height as usize);
+            let middle = (0..32 * 32).map(|k| (h / 2 + k / 32) * w + w / 2 + k % 32);
+            let mean = middle.map(|at| f64::from(picture.pixels[at][3])).sum::<f64>() / 1024.0 / 255.0;
+            let wanted = 1.0 - (1.0 - f64::from(opacity)).powi(2);
+            assert!((mean - wanted).abs() < 0.03, "{mean} of {wanted}");
+        }
+    }
+}
+
 /// Exact surfaces look like their mesh at a tolerance that no pixel shows, near and far, the trims close up too.
 #[test]
 fn exact_surfaces_look_like_a_fine_mesh() {

@@ -4,7 +4,7 @@
 struct Face {
     offset: vec3<f32>,   // local coordinates to the part's: offset + size * local
     size: f32,
-    color: vec4<f32>,    // linear
+    color: vec4<f32>,    // linear, with opacity
     first: u32,          // number of its first point in the buffer
     height: u32,         // points along v
     row_u: u32,          // its columns' places in the unit square
@@ -65,7 +65,7 @@ struct ExactOut {
     @location(0) p: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) place: vec2<f32>,
-    @location(3) @interpolate(flat) color: vec3<f32>,
+    @location(3) @interpolate(flat) color: vec4<f32>,
     @location(4) @interpolate(flat) trim: vec2<u32>,
     @location(5) @interpolate(flat) face: u32,
     @location(6) @interpolate(flat) placement: u32,
@@ -73,8 +73,8 @@ struct ExactOut {
     @location(7) @interpolate(perspective, centroid) spot: vec2<f32>,
 }
 
-fn color_of(face: Face, placement: Placement) -> vec3<f32> {
-    return select(face.color.rgb, placement.color.rgb, placement.color.a > 0.0);
+fn color_of(face: Face, placement: Placement) -> vec4<f32> {
+    return select(face.color, placement.color, placement.color.a > 0.0);
 }
 
 fn point_of(face: Face, number: u32) -> vec3<f32> {
@@ -123,13 +123,13 @@ const SAMPLES_Y = vec4<f32>(-0.375, -0.125, 0.125, 0.375);
 
 // Colour is found once a pixel, what is trimmed at each of its samples.
 @fragment
-fn fragment(in: ExactOut) -> Covered {
+fn fragment(in: ExactOut, @builtin(front_facing) front: bool) -> Covered {
     let right = dpdx(in.place);
     let down = dpdy(in.place);
     let x = in.place.x + SAMPLES_X * right.x + SAMPLES_Y * down.x;
     let y = in.place.y + SAMPLES_X * right.y + SAMPLES_Y * down.y;
     let bits = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), inside(in.trim.x, in.trim.y, x, y));
-    return covered(in, bits.x | bits.y | bits.z | bits.w);
+    return covered(in, front, bits.x | bits.y | bits.z | bits.w);
 }
 
 // Towards the outside, in view space.
@@ -143,14 +143,15 @@ fn normal_in(in: ExactOut) -> vec3<f32> {
     return in.normal;
 }
 
-fn covered(in: ExactOut, samples: u32) -> Covered {
-    if is_cut(in.p) || samples == 0u {
+fn covered(in: ExactOut, front: bool, inside: u32) -> Covered {
+    if is_cut(in.p) || inside == 0u {
         discard;
     }
     if view.fill.a > 0.0 {
-        return Covered(vec4<f32>(view.fill.rgb, 1.0), samples);
+        return Covered(vec4<f32>(view.fill.rgb, 1.0), inside);
     }
-    return Covered(vec4<f32>(lit(in.color, normal_in(in), in.p), 1.0), samples);
+    let samples = inside & veil(in.color.a, in.clip, front, in.face + in.placement);
+    return Covered(vec4<f32>(lit(in.color.rgb, normal_in(in), in.p), 1.0), samples);
 }
 
 // What a fragment knows of its place and the normal it is lit by, as numbers: for the tests, which compare them with double
@@ -167,11 +168,11 @@ fn fragment_probe(in: ExactOut) -> Probed {
 
 // By the trim texture. No answer is interpolated with a neighbour's rectangle.
 @fragment
-fn fragment_texture(in: ExactOut) -> Covered {
+fn fragment_texture(in: ExactOut, @builtin(front_facing) front: bool) -> Covered {
     let right = dpdx(in.place);
     let down = dpdy(in.place);
     if in.trim.y == 0u {
-        return covered(in, 15u);
+        return covered(in, front, 15u);
     }
     let rectangle = faces[in.face].rectangle;
     let half = faces[in.face].half_texel;
@@ -183,14 +184,14 @@ fn fragment_texture(in: ExactOut) -> Covered {
         let share = textureSampleLevel(trims, trim_sampler, at, plane / 4u, 0.0)[plane % 4u];
         samples |= select(0u, 1u << k, share >= 0.5);
     }
-    return covered(in, samples);
+    return covered(in, front, samples);
 }
 
 struct BorderOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) p: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    @location(2) @interpolate(flat) color: vec3<f32>,
+    @location(2) @interpolate(flat) color: vec4<f32>,
 }
 
 // A strip along the border of a face, as wide as neighbours that are sampled differently may stand apart, and a pixel
@@ -226,11 +227,12 @@ fn border_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) ins
 
 @fragment
 fn border_fragment(in: BorderOut) -> @location(0) vec4<f32> {
-    if is_cut(in.p) {
+    // Behind a face that is seen through a strip would be seen too.
+    if is_cut(in.p) || (in.color.a < 1.0 && view.fill.a == 0.0) {
         discard;
     }
     if view.fill.a > 0.0 {
         return vec4<f32>(view.fill.rgb, 1.0);
     }
-    return vec4<f32>(lit(in.color, in.normal, in.p), 1.0);
+    return vec4<f32>(lit(in.color.rgb, in.normal, in.p), 1.0);
 }

@@ -11,7 +11,7 @@ use super::choice::Choice;
 use super::exact::ExactRenderer;
 use super::generation::{Generation, Member, most_points};
 use super::mesh_groups::Triangles;
-use super::mesh_shapes::{scene_outline, scenery_of, shape_boxes};
+use super::mesh_shapes::{scene_outline, scenery_of, seen_through, shape_boxes};
 use super::renderer::{Renderer, Stage, draw};
 use super::residents::{Home, Resident, settle};
 use super::target::Target;
@@ -117,11 +117,16 @@ impl<'a> ExactScene<'a> {
     /// [`GpuError::TooLarge`] for a face beyond what the device binds at once, and what [`Gpu::watched`] gives.
     pub fn new(
         gpu: &Gpu,
-        exact: ExactModel,
+        mut exact: ExactModel,
         (scene, model): (&'a Scene, &'a Model),
         style: Style,
     ) -> Result<Self, GpuError> {
         let (mut scenery, _) = scenery_of(scene, model, style, Some(&exact));
+        // Through what is not opaque backs are seen.
+        let veiled = seen_through(scene, &scenery.placed);
+        for (part, _) in exact.parts.iter_mut().zip(veiled).filter(|(_, veiled)| *veiled) {
+            part.faces.iter_mut().for_each(|f| f.outward = None);
+        }
         // Lines are made for the view.
         scenery.shapes.iter_mut().for_each(|shape| shape.segments.clear());
         gpu.watched("uploading the model", || {

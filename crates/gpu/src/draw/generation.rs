@@ -5,7 +5,7 @@
 use super::blocks::{Blocks, Cells};
 use super::choice::Choice;
 use super::exact::ExactRenderer;
-use super::mesh_shapes::{DEFAULT_COLOR, local};
+use super::mesh_shapes::{DEFAULT_COLOR, local, opacity};
 use super::pipelines::{bind_group, bind_resources};
 use super::residents::{Home, Resident};
 use super::trim_texture::{TrimTexture, Trimmed};
@@ -270,7 +270,7 @@ impl Plan {
         let nets = self.push_spans(resident.set.has_bezier(), entry, [low, high]);
         let color = face.color.map_or_else(
             || DEFAULT_COLOR.map(|c| linear(f64::from(c) / 255.0) as f32),
-            |c| [c[0], c[1], c[2], 1.0],
+            |c| [c[0], c[1], c[2], opacity(c)],
         );
         self.faces.push(FaceData {
             offset: local(frame.middle, member.middle),

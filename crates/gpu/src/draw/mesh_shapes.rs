@@ -80,11 +80,13 @@ fn shape_of(
             Some(FaceGeometry::Surface(surface)) => Some(surface.as_ref()),
             _ => None,
         };
+        let first = shape.vertices.len();
         let color = face_color(part.face_colors.get(face).copied().flatten(), style);
         match (style, surface) {
             (Style::Error, Some(surface)) => push_errors(&mut shape, &mut values, part, mesh, surface, unit),
             _ => push_face(&mut shape, &mut values, part, mesh, color, surface.map(|s| (s, style, unit))),
         }
+        shape.vertices[first..].iter_mut().for_each(|v| v.face = face as u32);
         if style == Style::Wireframe {
             push_triangle_edges(&mut shape, part, mesh);
         }
@@ -180,10 +182,23 @@ fn face_color(color: Option<Rgba>, style: Style) -> [u8; 4] {
     }
 }
 
-/// Linear colour as sRGB bytes, opaque.
+/// Linear colour as sRGB bytes, and opacity.
 pub(crate) fn srgb_bytes(c: Rgba) -> [u8; 4] {
     let byte = |x: f32| (srgb(f64::from(x).clamp(0.0, 1.0)) * 255.0).round() as u8;
-    [byte(c[0]), byte(c[1]), byte(c[2]), 255]
+    [byte(c[0]), byte(c[1]), byte(c[2]), (255.0 * opacity(c)).round() as u8]
+}
+
+/// The opacity of a colour. Nothing is quite invisible: 0 stands for no colour.
+pub(crate) fn opacity(c: Rgba) -> f32 {
+    c[3].clamp(1.0 / 255.0, 1.0)
+}
+
+/// Per part whether something of it is seen through, as it is or as it is placed.
+pub(crate) fn seen_through(scene: &Scene, placed: &[Placed]) -> Vec<bool> {
+    let veiled = |c: &Option<Rgba>| c.is_some_and(|c| opacity(c) < 1.0);
+    let mut found: Vec<bool> = scene.parts.iter().map(|p| p.face_colors.iter().any(veiled)).collect();
+    placed.iter().filter(|p| veiled(&p.color)).for_each(|p| found[p.shape] = true);
+    found
 }
 
 fn push_face(
@@ -200,6 +215,7 @@ fn push_face(
             position: local(part.mesh.positions[corner.position as usize], shape.middle),
             normal: corner.normal.as_vec3().to_array(),
             color,
+            face: 0,
         });
         values.push(match exact {
             Some((surface, Style::Curvature, unit)) => {
@@ -234,6 +250,7 @@ fn push_errors(
                     position: local(p, shape.middle),
                     normal: n.as_vec3().to_array(),
                     color: DEFAULT_COLOR,
+                    face: 0,
                 });
                 values.push(distance(surface, uv, p) * unit);
             }
@@ -278,6 +295,7 @@ fn push_triangles_of_the_file(shape: &mut Shape, values: &mut Vec<f64>, part: &S
                     position: local(*corner, shape.middle),
                     normal: normal.as_vec3().to_array(),
                     color,
+                    face: 0,
                 });
                 values.push(0.0);
             }

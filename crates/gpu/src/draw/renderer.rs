@@ -25,7 +25,7 @@ impl Renderer {
     /// # Errors
     /// What [`Gpu::watched`] gives.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4];
+        let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Uint32];
         let corners = wgpu::VertexBufferLayout {
             array_stride: size_of::<super::Vertex>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,

@@ -9,8 +9,10 @@ use glam::{DAffine3, DVec3};
 pub struct Vertex {
     pub position: [f32; 3],
     pub normal: [f32; 3],
-    /// sRGB; opacity 0 marks the colour of a measured value, which no assembly overrides.
+    /// sRGB and opacity; 0 of that marks the colour of a measured value, which no assembly overrides.
     pub color: [u8; 4],
+    /// The face's number: neighbours that are seen through each other differ in it.
+    pub face: u32,
 }
 
 /// The triangles and lines of one part.

@@ -11,7 +11,7 @@ struct View {
     section: vec4<f32>,       // of view space: what lies where dot(normal, p) > offset is cut away; 0: nothing
 }
 
-// One placement of a part: part to view, and the colour in place of its own where opacity is not 0.
+// One placement of a part: part to view, and the colour in place of its own where that is not 0 in opacity.
 struct Placement {
     view: mat4x4<f32>,
     normal: mat3x3<f32>,
@@ -51,6 +51,25 @@ fn lit(color: vec3<f32>, direction: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
     let diffuse = 0.62 * max(dot(n, key), 0.0) + 0.16 * max(dot(n, fill), 0.0);
     let shine = 0.10 * pow(max(dot(n, normalize(key + e)), 0.0), 40.0);
     return color * (sky + diffuse) + vec3<f32>(shine);
+}
+
+// Which of a pixel's four samples a face of this opacity covers: stochastic transparency (Enderton, Sintorn, Shirley, Luebke 2010)
+// with patterns of 4 × 4 pixels in place of noise, so that the order of drawing does not matter. From pixel to pixel the samples
+// turn by as much as one of 16 patterns says: over two faces of different patterns, as over front and back of one, about every choice of
+// one meets every choice of the other.
+fn veil(opacity: f32, at: vec4<f32>, front: bool, seed: u32) -> u32 {
+    if opacity >= 1.0 {
+        return 15u;
+    }
+    let x = u32(at.x);
+    let y = u32(at.y);
+    let z = x ^ y;
+    let rank = ((z & 1u) << 3u) | ((y & 1u) << 2u) | (z & 2u) | ((y >> 1u) & 1u);
+    let count = min(u32(4.0 * opacity + (f32(rank) + 0.5) / 16.0), 4u);
+    let pattern = (7u * seed) ^ select(1u, 0u, front);
+    let first = ((pattern & 3u) * x + ((pattern >> 2u) & 3u) * y + (pattern >> 4u)) & 3u;
+    let samples = (1u << count) - 1u;
+    return ((samples << first) | (samples >> (4u - first))) & 15u;
 }
 
 // The clip position of a point of view space with the depth of the one that lies so many pixels nearer to the eye.

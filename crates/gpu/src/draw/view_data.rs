@@ -1,5 +1,6 @@
 //! The view and the placements as the shaders read them.
 
+use super::mesh_shapes::opacity;
 use super::{Background, Camera, Normals, Placed, RenderOptions, Scenery, Style};
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DMat3, DMat4, Mat4};
@@ -84,7 +85,7 @@ impl Standing {
         Self {
             world,
             normal: if finite { turned * scale.recip() } else { flat() },
-            color: color.map_or([0.0; 4], |c| [c[0], c[1], c[2], 1.0]),
+            color: color.map_or([0.0; 4], |c| [c[0], c[1], c[2], opacity(c)]),
         }
     }
 

@@ -80,6 +80,7 @@ pub fn single(gpu: &Gpu) -> Result<(), GpuError> {
     const SIDES: [usize; 8] = [8, 16, 32, 64, 128, 256, 512, 1024];
     for (title, wanted) in [
         ("One surface of 12 × 12 control points, points", Wanted::Points),
+        ("One surface, points and normals, as drawing asks", Wanted::Normals),
         ("One surface, points, first derivatives, normals", Wanted::First),
     ] {
         let mut cases = Vec::new();

@@ -3,7 +3,8 @@
 use crate::scene::Scenario;
 use crate::time::{grouped, seconds};
 use chordal_gpu::{
-    ExactRenderer, ExactScene, Gpu, GpuError, PIXEL_ERROR, RenderOptions, Renderer, Style, View, exact_model,
+    Background, ExactRenderer, ExactScene, Gpu, GpuError, PIXEL_ERROR, RenderOptions, Renderer, Style, View,
+    exact_model,
 };
 use chordal_nurbs::{DVec3, NurbsSurface};
 use std::time::Instant;
@@ -64,6 +65,44 @@ pub fn by_surfaces(gpu: &Gpu) -> Result<(), GpuError> {
             println!("\nA frame took more than {LONGEST} s: larger scenes are left out.");
             break;
         }
+    }
+    println!();
+    Ok(())
+}
+
+/// What placements cost: one part of three surfaces, one of them trimmed, placed over and over.
+pub fn by_placements(gpu: &Gpu) -> Result<(), GpuError> {
+    println!(
+        "One part of three surfaces placed many times, 640 × 480 pixels. Milliseconds until the frame is submitted, and until it is"
+    );
+    println!(
+        "done: of a frame like the last, and of one whose placements are composed with the camera again.\n"
+    );
+    println!("| placements | like the last: submitted | done | composed again: submitted | done |");
+    println!("|---|---|---|---|---|");
+    let (renderer, exact) = (Renderer::new(gpu)?, ExactRenderer::new(gpu)?);
+    for count in [100, 1_000, 10_000, 100_000] {
+        let (model, scene) = Scenario::new(3).placed(count);
+        let mut shown = ExactScene::new(gpu, exact_model(&scene, &model), (&scene, &model), Style::Shaded)?;
+        let mut best = [[f64::INFINITY; 2]; 2];
+        let began = Instant::now();
+        for frame in 0..8 {
+            // Another background composes the placements again, and evaluates nothing.
+            let background = [Background::LIGHT, Background::DARK][frame % 2];
+            for kind in best.iter_mut().rev() {
+                let options = options([640, 480]).with_background(background);
+                let started = Instant::now();
+                renderer.draw_exact(gpu, &exact, &mut shown, &options)?;
+                let submitted = started.elapsed().as_secs_f64();
+                gpu.wait()?;
+                *kind = [kind[0].min(submitted), kind[1].min(started.elapsed().as_secs_f64())];
+            }
+            if began.elapsed().as_secs_f64() > 2.0 * LONGEST {
+                break;
+            }
+        }
+        let [[last, last_done], [anew, anew_done]] = best.map(|kind| kind.map(|s| 1e3 * s));
+        println!("| {} | {last:.2} | {last_done:.1} | {anew:.2} | {anew_done:.1} |", grouped(count));
     }
     println!();
     Ok(())

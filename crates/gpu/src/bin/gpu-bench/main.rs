@@ -31,6 +31,11 @@ const SECTIONS: &[Section] = &[
         run: evaluation::mesher,
     },
     Section { name: "surfaces", summary: "frames against the number of surfaces", run: frames::by_surfaces },
+    Section {
+        name: "placements",
+        summary: "frames against the number of placements of one part",
+        run: frames::by_placements,
+    },
     Section { name: "grids", summary: "frames against the size of grids", run: frames::by_grids },
 ];
 

@@ -83,6 +83,21 @@ impl Scenario {
         (model, scene)
     }
 
+    /// The same, its first part placed `count` times on a lattice.
+    pub fn placed(&self, count: usize) -> (Model, Scene) {
+        let (model, mut scene) = self.model();
+        let columns = (count as f64).sqrt().ceil() as usize;
+        let node = |k: usize| chordal_mesh::SceneNode {
+            transform: DAffine3::from_translation(
+                DVec3::new((k % columns) as f64, (k / columns) as f64, 0.0) * 7.0,
+            ),
+            ..scene.nodes[0].clone()
+        };
+        scene.nodes = (0..count).map(node).collect();
+        scene.roots = (0..count).collect();
+        (model, scene)
+    }
+
     /// The scene as text that tools/glu_bench.c reads: the number of surfaces and the box; then for each the control points along
     /// each side, the knots, the homogeneous points, the number of loops and each loop's points.
     pub fn to_text(&self) -> String {
