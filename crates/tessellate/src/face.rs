@@ -71,20 +71,22 @@ pub(crate) fn mesh_face(
     options: &Options,
     cancel: &Cancel,
 ) -> Outcome {
-    let mut seam_chord = SEAM_CHORD;
-    let mut accept = context.accept;
-    let mut creased = true;
-    for _ in 0..SEAM_TRIES {
-        match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept, creased }) {
-            Ok(Attempt::Over(outcome)) => return outcome,
-            Ok(Attempt::Crossing) => creased = false,
-            Ok(Attempt::FinerSeam) => seam_chord *= 0.7,
-            // Nothing more can be done about it: better a face that is known to be off than none.
-            Ok(Attempt::Stuck) => accept = true,
-            Err(reason) => return Outcome::Failed(reason),
+    let mut how = Try { seam_chord: SEAM_CHORD, accept: context.accept, creased: true, folds: false };
+    for folds in [false, true] {
+        (how.folds, how.seam_chord) = (folds, SEAM_CHORD);
+        for _ in 0..SEAM_TRIES {
+            match FaceWork::run(context, limits, options, cancel, how) {
+                Ok(Attempt::Over(outcome)) => return outcome,
+                Ok(Attempt::Crossing) => how.creased = false,
+                Ok(Attempt::FinerSeam) => how.seam_chord *= 0.7,
+                // Nothing more can be done about it: better a face that is known to be off than none.
+                Ok(Attempt::Stuck) => how.accept = true,
+                Err(reason) => return Outcome::Failed(reason),
+            }
         }
     }
-    match FaceWork::run(context, limits, options, cancel, Try { seam_chord, accept: true, creased: false }) {
+    how = Try { accept: true, creased: false, ..how };
+    match FaceWork::run(context, limits, options, cancel, how) {
         Ok(Attempt::Over(outcome)) => outcome,
         Ok(_) => Outcome::Failed("its seam cannot be cut finely enough".into()),
         Err(reason) => Outcome::Failed(reason),
@@ -99,6 +101,8 @@ struct Try {
     accept: bool,
     /// Cut along the creases of the surface.
     creased: bool,
+    /// Facets may double back over seams and creases, beyond which the face goes on: it lies narrower there than its tolerance.
+    folds: bool,
 }
 
 /// How one attempt at a face ended.
@@ -196,6 +200,7 @@ impl<'a, 's> FaceWork<'a, 's> {
         let hopeless = clipped && work.is_turned_somewhere();
         let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, how.accept || hopeless);
         prover.hopeless = hopeless;
+        prover.folds = how.folds;
         let verdict = match options.strategy {
             Strategy::Default => {
                 work.fill_by_rows();

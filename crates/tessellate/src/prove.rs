@@ -46,6 +46,8 @@ pub(crate) struct Prover<'a> {
     looks_closer: bool,
     /// Whatever is mended, the face will not be proven: little effort will do.
     pub hopeless: bool,
+    /// Facets may double back where the face goes on beyond them.
+    pub folds: bool,
 }
 
 /// Steps per triangle that a face begins with, and some more, after which it is stuck.
@@ -102,6 +104,7 @@ impl<'a> Prover<'a> {
             accept,
             looks_closer: options.strategy == Strategy::Default,
             hopeless: false,
+            folds: false,
         }
     }
 
@@ -310,7 +313,11 @@ impl<'a> Prover<'a> {
         }
         let corners = work.mesh.triangles[t as usize];
         // Folds inside the face only cover it more than once; where they meet its boundary they may reach beyond it.
-        if corners.iter().any(|&v| (v as usize) < work.chart.points.len())
+        let ends = |&v: &u32| match work.key(v) {
+            Key::Private(_) => !self.folds && (v as usize) < work.chart.points.len(),
+            _ => true,
+        };
+        if corners.iter().any(ends)
             && let Some(height) = self.folded_height(facet.xyz, corners.map(|v| work.normals[v as usize]))
         {
             // A chord that leaves the face by about as much as the facet is high must be finer; else an inner edge leaves it.
