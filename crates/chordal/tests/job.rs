@@ -94,3 +94,24 @@ fn no_corner_stays_shut() {
         }
     }
 }
+
+/// A bent sheet with a strip between two creases that is far narrower than the tolerance and folded over: no facet there keeps
+/// the angle.
+#[test]
+fn where_no_facet_keeps_the_angle_the_tolerance_comes_first() {
+    let rows = [(-1.0, -0.8, 0.0), (0.0, 0.0, 0.0), (0.0006, 0.0002, 0.3), (1.0, -0.9, 0.0)];
+    let columns = [(0.0, 0.0), (0.5, 0.6), (1.0, 0.6), (1.5, 0.0)];
+    let at =
+        |(y, z, shift): (f64, f64, f64)| columns.map(|(u, bend)| format!("{} {} {z}", u + shift, y + bend));
+    let points = rows.map(|row| at(row).join(", ")).join(", ");
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("pleat.x3d");
+    let text = format!(
+        "#X3D V3.3 utf8\nPROFILE Interchange\nCOMPONENT NURBS : 4\n\nShape {{ geometry NurbsPatchSurface {{ solid FALSE \
+         uOrder 4 vOrder 2 uDimension 4 vDimension 4 controlPoint Coordinate {{ point [ {points} ] }} }} }}\n"
+    );
+    std::fs::write(&path, text).expect("written");
+    let report = chordal::run(&Job::new(path)).expect("a mesh").report;
+    assert!(report.proven_error.is_some_and(|e| e <= report.options.tolerance), "{:?}", report.undone);
+    assert!(report.triangles < 1_000, "{}", report.triangles);
+    assert!(report.undone.iter().any(|u| u.contains("along a mesh edge")), "{:?}", report.undone);
+}

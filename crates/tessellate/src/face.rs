@@ -72,7 +72,9 @@ pub(crate) fn mesh_face(
     cancel: &Cancel,
 ) -> Outcome {
     let mut how = Try { seam_chord: SEAM_CHORD, accept: context.accept, creased: true, folds: false };
-    for folds in [false, true] {
+    // Where the surface turns at once, no seam is fine enough for the angle: the tolerance comes first, and the audit will tell.
+    let any_angle = &Limits { angle: f64::INFINITY, ..*limits };
+    for (folds, limits) in [(false, limits), (true, limits), (true, any_angle)] {
         (how.folds, how.seam_chord) = (folds, SEAM_CHORD);
         for _ in 0..SEAM_TRIES {
             match FaceWork::run(context, limits, options, cancel, how) {
