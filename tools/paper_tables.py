@@ -65,7 +65,7 @@ def surfaces_of(model):
 
 def edges_table(tables):
     out = ["## Trimming edges (Table 2)", ""]
-    out += ["Every face by itself, whole loops simplified, as in the document. Seconds: conversion, approximation.", ""]
+    out += ["Every face by itself, whole loops simplified, as in the document. CPU seconds: conversion, approximation.", ""]
     head = ["method"] + [m["model"] for m in tables] + ["document, Golf"]
     rows = []
     for method, (conversion, approximation, edges) in THEIRS.items():
@@ -97,7 +97,7 @@ def edges_table(tables):
 
 def surfaces_table(tables):
     out = ["## Surfaces (Table 3)", ""]
-    out += ["Triangles; seconds for the whole mesh; milliseconds to evaluate all vertices, each by itself → with coherence.", ""]
+    out += ["Triangles; CPU seconds for the whole mesh; milliseconds to evaluate all vertices, each by itself → with coherence.", ""]
     keys = [k for k in surfaces_of(tables[0])]
     theirs = {
         ("quadtree", "bezier3d", "proven"): "1,511,056 183.6 → 175.2 s",

@@ -66,7 +66,7 @@ def head(args: argparse.Namespace) -> list[str]:
         "# Strategies on models of every class",
         "",
         f"`tools/strategies_table.py` runs `chordal compare MODEL --both-bounds --angle off` at {args.tolerance}, on a machine with two "
-        "cores that had other work to do: seconds tell orders of magnitude. *Measured* is the largest distance of samples of the "
+        "cores that had other work to do; seconds are CPU time of all threads. *Measured* is the largest distance of samples of the "
         "exact surfaces from the mesh. *Edges* are chords of the model's edges, *ratio* is triangles over the fewest possible "
         "([report.md](../report.md)). The documents' methods see surfaces of all kinds as NURBS.",
         "",

@@ -83,7 +83,7 @@ def survey(compared: dict[str, dict], args: argparse.Namespace) -> str:
         "",
         "The survey of the Blender wiki compares uniform grid cut, Delaunay triangulation and recursive subdivision by plus and "
         f"minus signs. Here are numbers for its rows that can be measured (`tools/survey_table.py`, {len(compared)} models at "
-        f"{args.tolerance}, angle off; with two threads on a machine that had other work to do, so seconds tell orders of magnitude). "
+        f"{args.tolerance}, angle off; seconds are CPU time of all threads). "
         "Ratios are geometric means over the models.",
         "",
         "- *Code*: lines of the strategy's own parts, beside those that all share (the survey's complexity 1 : 3 : 6).",

@@ -7,10 +7,9 @@ use crate::job::{MeshedPart, mesh_parts, read_model_with};
 use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_brep::Model;
-use chordal_tessellate::{Bound, Cancel, Strategy};
+use chordal_tessellate::{Bound, Cancel, Stopwatch, Strategy};
 use serde::Serialize;
 use std::path::Path;
-use std::time::Instant;
 
 pub use plot::plot;
 
@@ -40,7 +39,7 @@ pub struct ComparedRow {
     pub triangles: usize,
     /// Chords of the model's edges, as placed.
     pub edges: usize,
-    /// Wall time of everything from the exact model to the mesh.
+    /// CPU time of all threads, from the exact model to the mesh; wall time where the system does not tell.
     pub seconds: f64,
     /// Largest proven error; `null` where a face has no proof.
     pub proven_error: Option<f64>,
@@ -106,9 +105,9 @@ pub fn compare(
             let options = options.clone().with_strategy(strategy).with_bound(bound);
             let resolved = resolve(&model, &options, None, input, cancel)?;
             comparison.tolerance = resolved.tolerance;
-            let started = Instant::now();
+            let clock = Stopwatch::of_process();
             let parts = mesh_parts(&model, &resolved, cancel, &|_| ());
-            let seconds = started.elapsed().as_secs_f64();
+            let seconds = clock.seconds();
             if cancel.is_cancelled() {
                 return Err(JobError::Cancelled { path: input.to_owned() });
             }

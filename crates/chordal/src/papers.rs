@@ -8,11 +8,10 @@ use crate::{JobError, JobOptions};
 use chordal_brep::{FaceGeometry, Model};
 use chordal_mesh::FaceMesh;
 use chordal_nurbs::{CoherentEvaluator, DVec2, DVec3, NurbsSurface, Surface, UvBox};
-use chordal_tessellate::{Bound, Cancel, Cut, EdgeMethod, LoopRow, Strategy, Stretch, loop_rows};
+use chordal_tessellate::{Bound, Cancel, Cut, EdgeMethod, LoopRow, Stopwatch, Strategy, Stretch, loop_rows};
 use serde::Serialize;
 use std::hint::black_box;
 use std::path::Path;
-use std::time::Instant;
 
 /// What a model gives in the tables.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -49,7 +48,7 @@ pub struct SurfaceEntry {
     pub triangles: usize,
     /// Chords of the model's edges.
     pub edges: usize,
-    /// Shortest wall time of some runs, from the exact model to the mesh.
+    /// Shortest CPU time of all threads (wall time where the system does not tell) of some runs, from the exact model to the mesh.
     pub seconds: f64,
     /// Vertices of all faces, those at edges once a face.
     pub vertices: usize,
@@ -156,9 +155,9 @@ fn surface(
     };
     let mut parts = Vec::new();
     for _ in 0..RUNS {
-        let clock = Instant::now();
+        let clock = Stopwatch::of_process();
         parts = mesh_parts(model, &resolved, cancel, &|_| ());
-        entry.seconds = entry.seconds.min(clock.elapsed().as_secs_f64());
+        entry.seconds = entry.seconds.min(clock.seconds());
         if entry.seconds > LONG {
             break;
         }
@@ -213,9 +212,9 @@ fn on_form(surface: &Surface, face: &FaceMesh) -> Option<(NurbsSurface, Vec<DVec
 
 fn shortest(evaluate: impl Fn() -> DVec3) -> f64 {
     let run = || {
-        let clock = Instant::now();
+        let clock = Stopwatch::of_thread();
         black_box(evaluate());
-        clock.elapsed().as_secs_f64()
+        clock.seconds()
     };
     (0..RUNS).map(|_| run()).fold(f64::INFINITY, f64::min)
 }

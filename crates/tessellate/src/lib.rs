@@ -6,6 +6,7 @@
 
 mod bulk;
 mod chart;
+mod clock;
 mod crease;
 mod crossings;
 mod doubled;
@@ -29,6 +30,7 @@ mod triangulate;
 mod unroll;
 
 pub use bulk::{Bulk, Evaluator};
+pub use clock::Stopwatch;
 pub use edge_method::{Criterion, EdgeMethod, EdgeMethodEntry, LoopRow, loop_rows};
 pub use options::{Bound, Cancel, Options};
 pub use report::{FaceReport, PartReport, Phases, StageSeconds};

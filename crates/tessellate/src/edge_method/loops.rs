@@ -7,12 +7,12 @@ use super::curve::TrimmingCurve;
 use super::simplify::simplified;
 use super::untangle::untangled;
 use super::{CURVE_SHARE, EdgeMethod, EdgePiece, in_plane, in_space};
+use crate::clock::Stopwatch;
 use crate::edges::EdgeUse;
 use crate::rounds::resolution;
 use crate::surface::FaceSurface;
 use chordal_brep::{Coedge, Face, FaceGeometry, Loop, Part};
 use chordal_nurbs::{DVec2, DVec3, UvBox};
-use std::time::Instant;
 
 /// What one method makes of all trimming loops of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,22 +81,22 @@ impl FaceLoops<'_> {
                     line.is_flat = false;
                 }
             }
-            let clock = Instant::now();
+            let clock = Stopwatch::of_thread();
             if let EdgeMethod::Bezier3d { simplified: true, .. } = row.method {
                 let kept = simplified(&line.xyz, (1.0 - CURVE_SHARE) * self.tolerance);
                 line.uv = if line.is_flat { kept.iter().map(|&i| line.uv[i]).collect() } else { Vec::new() };
                 line.xyz = kept.iter().map(|&i| line.xyz[i]).collect();
             }
-            row.approximation += clock.elapsed().as_secs_f64();
+            row.approximation += clock.seconds();
             row.edges += line.xyz.len().saturating_sub(1);
             if line.is_flat && is_closed(&line.uv) {
                 line.uv.pop();
                 flat.push(line.uv);
             }
         }
-        let clock = Instant::now();
+        let clock = Stopwatch::of_thread();
         row.crossings += untangled(&flat).inserted;
-        row.approximation += clock.elapsed().as_secs_f64();
+        row.approximation += clock.seconds();
     }
 
     /// Adds one coedge to its loop; `None` where it has no curve in the plane or that cannot be approximated.
@@ -105,25 +105,25 @@ impl FaceLoops<'_> {
         let curve = edge.curve.as_deref()?;
         let piece = EdgePiece { curve, whole: edge.range, range: edge.range, tolerance: self.tolerance };
         let one = EdgeUse { surface: self.surface, pcurve: coedge.pcurves.first(), reach: 0.0 };
-        let clock = Instant::now();
+        let clock = Stopwatch::of_thread();
         let trimming = TrimmingCurve::new(&piece, &one)?;
         let (mut points, mut guesses);
         match row.method {
             EdgeMethod::Bezier3d { criterion, cut, simplified } => {
                 let lifted = in_space::lifted(&trimming)?;
-                row.conversion += clock.elapsed().as_secs_f64();
-                let clock = Instant::now();
+                row.conversion += clock.seconds();
+                let clock = Stopwatch::of_thread();
                 let share = if simplified { CURVE_SHARE } else { 1.0 };
                 let made = in_space::polyline(&lifted, share * self.tolerance, (criterion, cut, false))?;
                 (points, guesses) = (made.points, made.guesses);
-                row.approximation += clock.elapsed().as_secs_f64();
+                row.approximation += clock.seconds();
             }
             _ => {
-                row.conversion += clock.elapsed().as_secs_f64();
-                let clock = Instant::now();
+                row.conversion += clock.seconds();
+                let clock = Stopwatch::of_thread();
                 let made = in_plane::stops(&trimming, self.tolerance)?;
                 (points, guesses) = (made.points, made.guesses);
-                row.approximation += clock.elapsed().as_secs_f64();
+                row.approximation += clock.seconds();
             }
         }
         if !coedge.forward {

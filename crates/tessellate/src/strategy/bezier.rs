@@ -27,11 +27,11 @@ use super::projected::ProjectedNet;
 use super::region::Region;
 use super::run::{Check, Method};
 use super::scanlines::{Place, Scanlines, lines_for};
+use crate::clock::Stopwatch;
 use crate::face::FaceWork;
 use crate::triangulate::Triangulation;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 use rustc_hash::FxHashSet;
-use std::time::Instant;
 
 /// Bézier patches of one face.
 pub(crate) struct BezierQuads {
@@ -92,10 +92,10 @@ fn height(work: &FaceWork<'_, '_>, b: UvBox) -> f64 {
 
 impl Method for BezierQuads {
     fn build(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<(), String> {
-        let clock = Instant::now();
+        let clock = Stopwatch::of_thread();
         self.cells.refine(&ProjectedNet, &self.region, self.tolerance, self.measure, check)?;
-        work.phases.subdivision += clock.elapsed().as_secs_f64();
-        let clock = Instant::now();
+        work.phases.subdivision += clock.seconds();
+        let clock = Stopwatch::of_thread();
         let (kept, inside) = self.kept();
         let found = cut(work, &self.region, &kept);
         let borders = Borders::new(&kept);
@@ -103,7 +103,7 @@ impl Method for BezierQuads {
             kept.iter().zip(&inside).filter(|(_, inside)| **inside).map(|(b, _)| *b).collect();
         let closed = close(work, &found.fixed, &whole);
         let opened = open_out(work);
-        work.phases.triangulation += clock.elapsed().as_secs_f64();
+        work.phases.triangulation += clock.seconds();
         let trace = &mut work.trace;
         trace.add(ProjectedNet.name(), kept.len());
         trace.add("scanlines", self.lines.count());

@@ -199,17 +199,7 @@ impl Cells {
             return false;
         }
         let whole = region.uv_box.size() * NARROWEST;
-        let mut parts = vec![self.leaves[index].clone()];
-        for cut in cuts {
-            let mut after = Vec::with_capacity(parts.len() + 1);
-            for part in parts {
-                match self.halves(&part, *cut, whole) {
-                    Some((low, high)) => after.extend([low, high]),
-                    None => after.push(part),
-                }
-            }
-            parts = after;
-        }
+        let mut parts = self.parts(self.leaves[index].clone(), cuts, whole);
         if parts.len() == 1 {
             return false;
         }
@@ -219,6 +209,28 @@ impl Cells {
         self.leaves.splice(index..=index, parts.drain(..1));
         self.leaves.append(&mut parts);
         true
+    }
+
+    /// The parts of a cell, in the order in which the cuts, one after the other, leave them. Every part goes on with the cuts that
+    /// may still meet it: hundreds of cuts make tens of thousands of parts.
+    fn parts(&self, cell: Cell, cuts: &[Split], narrowest: DVec2) -> Vec<Cell> {
+        let mut parts = Vec::new();
+        let mut open = vec![(cell, cuts.to_vec())];
+        while let Some((part, cuts)) = open.pop() {
+            let split = |(k, cut): (usize, &Split)| Some((k, self.halves(&part, *cut, narrowest)?));
+            let Some((k, (low, high))) = cuts.iter().enumerate().find_map(split) else {
+                parts.push(part);
+                continue;
+            };
+            let within = |part: &Cell| {
+                let own = part.piece.domain();
+                let meets = |c: &&Split| c.at > own.min[c.axis] && c.at < own.max[c.axis];
+                cuts[k + 1..].iter().filter(meets).copied().collect()
+            };
+            let (of_low, of_high) = (within(&low), within(&high));
+            open.extend([(high, of_high), (low, of_low)]);
+        }
+        parts
     }
 
     /// The same cut at the nearest step of the root.

@@ -16,13 +16,13 @@ use super::quadtree::{Quadtree, SURFACE_SHARE};
 use super::recursive::Recursive;
 use super::region::Region;
 use crate::chart::Segment;
+use crate::clock::Stopwatch;
 use crate::edge_method::EdgeMethod;
 use crate::face::FaceWork;
 use crate::options::{Bound, Options};
 use crate::prove::{Fault, Prover, Verdict};
 use crate::triangulate::Triangulation;
 use chordal_nurbs::{DVec2, UvBox};
-use std::time::Instant;
 
 /// So often a strategy may refine what the proof found too coarse; what is left then is mended as the default does.
 const ROUNDS: usize = 24;
@@ -85,15 +85,15 @@ const HALVINGS: usize = 1;
 
 impl Method for ByCells {
     fn build(&mut self, work: &mut FaceWork<'_, '_>, check: Check<'_>) -> Result<(), String> {
-        let clock = Instant::now();
+        let clock = Stopwatch::of_thread();
         self.cells.refine(&*self.rule, &self.region, self.tolerance, self.measure, check)?;
-        work.phases.subdivision += clock.elapsed().as_secs_f64();
-        let clock = Instant::now();
+        work.phases.subdivision += clock.seconds();
+        let clock = Stopwatch::of_thread();
         let met = self.drawing();
         let found = cut(work, &self.region, &met);
         retriangulate(&mut work.mesh, &found.fixed, self.filling, &mut work.trace);
         let opened = open_out(work);
-        work.phases.triangulation += clock.elapsed().as_secs_f64();
+        work.phases.triangulation += clock.seconds();
         work.trace.add(self.rule.name(), met.len());
         work.trace.add("corners of cells", found.corners);
         work.trace.add("borders cut by loops", found.crossings);
@@ -116,9 +116,9 @@ impl Method for ByCells {
         if !self.judges_chords {
             return Vec::new();
         }
-        let clock = Instant::now();
+        let clock = Stopwatch::of_thread();
         let judged = judge_chords(work, &self.cells, &*self.rule);
-        work.phases.traversal += clock.elapsed().as_secs_f64();
+        work.phases.traversal += clock.seconds();
         for (name, count) in TRANSITIONS.iter().zip(judged.transitions) {
             work.trace.add(name, count);
         }
@@ -166,9 +166,9 @@ pub(crate) fn fill(
     prover: &mut Prover<'_>,
     options: &Options,
 ) -> Result<Verdict, String> {
-    let clock = Instant::now();
+    let clock = Stopwatch::of_thread();
     let mut method = method(work, options)?;
-    work.phases.conversion += clock.elapsed().as_secs_f64();
+    work.phases.conversion += clock.seconds();
     let verdict = refine(work, prover, &mut *method, options.bound);
     if options.record_cells {
         work.cells = method.drawing();
