@@ -115,3 +115,16 @@ fn where_no_facet_keeps_the_angle_the_tolerance_comes_first() {
     assert!(report.triangles < 1_000, "{}", report.triangles);
     assert!(report.undone.iter().any(|u| u.contains("along a mesh edge")), "{:?}", report.undone);
 }
+
+/// Weights from 0.001 to 1000: bounds are wild over the chords and beside them, and there are only so many rounds to make edges finer.
+#[test]
+fn wild_bounds_leave_rounds_enough() {
+    for percent in [0.2, 0.5, 1.0] {
+        for angle in [None, Some(20f64.to_radians())] {
+            let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent)).with_angle(angle);
+            let job = Job::new(corpus("weight_range")).with_options(options);
+            let report = chordal::run(&job).expect("a mesh").report;
+            assert!(report.clean, "{percent} %, {angle:?}: {:?}", report.undone);
+        }
+    }
+}

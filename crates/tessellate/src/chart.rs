@@ -66,6 +66,8 @@ pub(crate) struct FaceContext<'a, 's> {
     pub last_resort: bool,
     /// The last round: take what there is.
     pub accept: bool,
+    /// An early round: chords with bounds far beyond the tolerance are looked at closely before they are made finer.
+    pub closer: bool,
     /// Points nearer together than this are the same point.
     pub resolution: f64,
 }

@@ -71,7 +71,13 @@ pub(crate) fn mesh_face(
     options: &Options,
     cancel: &Cancel,
 ) -> Outcome {
-    let mut how = Try { seam_chord: SEAM_CHORD, accept: context.accept, creased: true, folds: false };
+    let mut how = Try {
+        seam_chord: SEAM_CHORD,
+        accept: context.accept,
+        creased: true,
+        folds: false,
+        closer: context.closer,
+    };
     // Where the surface turns at once, no seam is fine enough for the angle: the tolerance comes first, and the audit will tell.
     let any_angle = &Limits { angle: f64::INFINITY, ..*limits };
     for (folds, limits) in [(false, limits), (true, limits), (true, any_angle)] {
@@ -81,13 +87,15 @@ pub(crate) fn mesh_face(
                 Ok(Attempt::Over(outcome)) => return outcome,
                 Ok(Attempt::Crossing) => how.creased = false,
                 Ok(Attempt::FinerSeam) => how.seam_chord *= 0.7,
+                // Points inside did not do: finer edges must.
+                Ok(Attempt::Stuck) if how.closer => how.closer = false,
                 // Nothing more can be done about it: better a face that is known to be off than none.
                 Ok(Attempt::Stuck) => how.accept = true,
                 Err(reason) => return Outcome::Failed(reason),
             }
         }
     }
-    how = Try { accept: true, creased: false, ..how };
+    how = Try { accept: true, creased: false, closer: false, ..how };
     match FaceWork::run(context, limits, options, cancel, how) {
         Ok(Attempt::Over(outcome)) => outcome,
         Ok(_) => Outcome::Failed("its seam cannot be cut finely enough".into()),
@@ -105,6 +113,8 @@ struct Try {
     creased: bool,
     /// Facets may double back over seams and creases, beyond which the face goes on: it lies narrower there than its tolerance.
     folds: bool,
+    /// Look closer at chords whose bounds are far beyond the tolerance before they are made finer.
+    closer: bool,
 }
 
 /// How one attempt at a face ended.
@@ -203,6 +213,9 @@ impl<'a, 's> FaceWork<'a, 's> {
         let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, how.accept || hopeless);
         prover.hopeless = hopeless;
         prover.folds = how.folds;
+        if !how.closer {
+            prover.closer_looks = 0;
+        }
         let verdict = match options.strategy {
             Strategy::Default => {
                 work.fill_by_rows();

@@ -4,7 +4,7 @@ mod chords;
 mod flip;
 mod sampled;
 
-use self::chords::{CHORD_BENDS, bend, close_to_boundary};
+use self::chords::{CHORD_BENDS, CLOSER_LOOKS, bend, close_to_boundary};
 use self::sampled::sampled_bound;
 use crate::chart::{Key, Segment};
 use crate::doubled::sorted;
@@ -43,7 +43,7 @@ pub(crate) struct Prover<'a> {
     accept: bool,
     /// Chords with bounds far beyond the tolerance are looked at in parts: the default's own way. The other methods set their points
     /// before the proof speaks, and what they are is what they would be without it.
-    looks_closer: bool,
+    pub closer_looks: u32,
     /// Whatever is mended, the face will not be proven: little effort will do.
     pub hopeless: bool,
     /// Facets may double back where the face goes on beyond them.
@@ -102,7 +102,7 @@ impl<'a> Prover<'a> {
             scratch: Vec::new(),
             sampled,
             accept,
-            looks_closer: options.strategy == Strategy::Default,
+            closer_looks: if options.strategy == Strategy::Default { CLOSER_LOOKS } else { 0 },
             hopeless: false,
             folds: false,
         }

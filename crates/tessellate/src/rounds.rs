@@ -25,6 +25,9 @@ use std::time::Instant;
 /// Rounds in which faces may ask for finer edges; what is still too coarse then is meshed as it is and reported.
 const MAX_ROUNDS: usize = 8;
 
+/// In so many rounds points inside are tried before chords with wild bounds are made finer.
+const CLOSER_ROUNDS: usize = 3;
+
 /// In so many rounds chords are halved, later quartered: where a surface turns within almost no distance, halves do not get there.
 const HALVING_ROUNDS: usize = 3;
 
@@ -252,6 +255,7 @@ impl Job<'_> {
                 doubled,
                 last_resort,
                 accept,
+                closer: round < CLOSER_ROUNDS,
                 resolution: self.resolution,
             };
             let options = match &self.left {

@@ -16,6 +16,10 @@ const WILD_CHORD: f64 = 64.0;
 const WILD_PARTS: usize = 8;
 const WILD_FINE: f64 = 0.1;
 
+/// So often points inside are tried first in one attempt at a face. Where the surface is wild over the chord as well, no facet beside it
+/// can be proven, however small, until it is halved.
+pub(super) const CLOSER_LOOKS: u32 = 32;
+
 /// A chord that bends by less than this share of a facet's height is straight to it.
 pub(super) const CHORD_BENDS: f64 = 0.25;
 
@@ -29,10 +33,14 @@ impl Prover<'_> {
         let ends = [(i + 1) % 3, (i + 2) % 3];
         let (uv, xyz) = (ends.map(|k| facet.uv[k]), ends.map(|k| facet.xyz[k]));
         let error = chord_bound(self.bounds, uv, xyz, 1, &mut self.scratch);
-        if self.looks_closer && error > WILD_CHORD * tolerance {
-            return chord_bound(self.bounds, uv, xyz, WILD_PARTS, &mut self.scratch) > WILD_FINE * tolerance;
+        let is_coarse = error > FINE_CHORD * tolerance;
+        if is_coarse && error > WILD_CHORD * tolerance && self.closer_looks > 0 {
+            let closer = chord_bound(self.bounds, uv, xyz, WILD_PARTS, &mut self.scratch);
+            let is_fine = closer <= WILD_FINE * tolerance;
+            self.closer_looks -= u32::from(is_fine);
+            return !is_fine;
         }
-        error > FINE_CHORD * tolerance
+        is_coarse
     }
 }
 
