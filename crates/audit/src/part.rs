@@ -171,12 +171,11 @@ fn check_origins(context: &mut Context<'_>, audit: &mut PartAudit) {
     add(lost, ProblemKind::Malformed, "positions come from nothing in the model");
 }
 
-/// A bound that is claimed must not be below the one recomputed; beyond rounding in the parameters found again, and for the error
-/// beyond how far the file is loose: where vertices lie off their edges, other parameters are nearest to them than those of the ends.
+/// A bound that is claimed must not be below the one recomputed; beyond rounding in the parameters found again.
 fn check_claim(context: &Context<'_>, index: usize, face: &FaceFindings, problems: &mut Vec<Problem>) {
     let Some(claim) = context.claim(index).filter(|_| face.audit.triangles > 0) else { return };
     let floor = 4.0 * face.rounding;
-    let mut add = |kind: ProblemKind, what: &str, claimed: f64, found: f64, floor: f64| {
+    let mut add = |kind: ProblemKind, what: &str, claimed: f64, found: f64| {
         if claimed < found * (1.0 - 1e-6) - floor {
             let source = context.part.faces[index].source;
             let sentence =
@@ -184,9 +183,8 @@ fn check_claim(context: &Context<'_>, index: usize, face: &FaceFindings, problem
             problems.push(Problem { subject: Subject::Face(index as u32), kind, sentence });
         }
     };
-    let loose = floor + face.audit.gap;
-    add(ProblemKind::UnderstatedError, "proven error", claim.proven_error, face.claimable, loose);
-    add(ProblemKind::UnderstatedGap, "gap", claim.gap, face.surface_gap, floor);
+    add(ProblemKind::UnderstatedError, "proven error", claim.proven_error, face.claimable);
+    add(ProblemKind::UnderstatedGap, "gap", claim.gap, face.surface_gap);
     if claim.proven_error.is_finite() && face.error.is_nan() && context.options.proven {
         let source = context.part.faces[index].source;
         let sentence = format!("face {source}: an error is claimed to be proven and nothing can be");

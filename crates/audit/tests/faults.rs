@@ -30,14 +30,8 @@ impl Sample {
     }
 
     fn new(name: &'static str) -> Sample {
-        Self::loosened(name, 0.0)
-    }
-
-    /// With its vertices this share of the tolerance off their edges.
-    fn loosened(name: &'static str, by: f64) -> Sample {
-        let mut part = common::load(name).parts.into_iter().find(|p| !p.faces.is_empty()).unwrap();
+        let part = common::load(name).parts.into_iter().find(|p| !p.faces.is_empty()).unwrap();
         let tolerance = 1e-3 * common::diagonal(&part);
-        part.vertices.iter_mut().for_each(|v| v.point += DVec3::new(0.6, 0.0, 0.8) * by * tolerance);
         let (mesh, report) = common::mesh(&part, tolerance, None);
         let claims = common::claims(&report);
         let sample = Sample { name, part, mesh, claims, tolerance };
@@ -222,33 +216,6 @@ fn a_missing_face_is_found() {
             sample.expect("a missing face", &[MissingFace], |mesh| mesh.faces[f].triangles.clear());
         }
     }
-}
-
-/// Where vertices lie off their edges, the parameters that the audit finds are not those of the ends: its bounds differ by about as
-/// much, and by no more.
-#[test]
-fn a_bound_understated_by_less_than_the_file_is_loose_is_none() {
-    let mut tried = 0;
-    for mut sample in ["fillets", "fillet_bspline", "torus_bands"].map(|name| Sample::loosened(name, 0.02)) {
-        for f in sample.faces().collect::<Vec<_>>() {
-            let honest = sample.claims[f];
-            if honest.gap < 1e-3 * honest.proven_error || honest.proven_error < 8.0 * honest.gap {
-                continue;
-            }
-            tried += 1;
-            sample.claims[f].proven_error = honest.proven_error - 0.5 * honest.gap;
-            assert!(
-                sample.audit(&sample.mesh).clean(),
-                "{}: {:?}",
-                sample.name,
-                sample.audit(&sample.mesh).problems
-            );
-            sample.claims[f].proven_error = 0.5 * honest.proven_error;
-            sample.expect("an understated bound", &[UnderstatedError], |_| ());
-            sample.claims[f] = honest;
-        }
-    }
-    assert!(tried > 0);
 }
 
 #[test]
