@@ -6,12 +6,14 @@
 
 mod assembly;
 mod ids;
+pub mod issue;
 mod part;
 mod source;
 mod unsewn;
 
 pub use assembly::{Model, Node, Placement};
 pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};
+pub use issue::{AuditIssue, Issue, IssueKind, MeshIssue, ReadIssue, Severity};
 pub use part::{
     Body, BodyKind, Coedge, Color, Edge, Face, FaceGeometry, Loop, LooseItem, LooseKind, Part, Pcurve, Shell,
     TessellatedItem, Vertex,

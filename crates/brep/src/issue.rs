@@ -1,0 +1,123 @@
+//! One diagnostic type for the whole pipeline, from reader to report.
+//!
+//! Every stage that repairs, guesses, drops or rejects something records an [`Issue`]: a kind that code can match, a
+//! severity, and the entity of the file that it concerns. The sentence that people read is made here and nowhere
+//! else, so that wording, plurals and units are the same in every stage.
+//!
+//! Each stage has an enum of its own ([`ReadIssue`], [`MeshIssue`], [`AuditIssue`]) in a file of its own. The fields
+//! of a variant are values, never prepared text.
+
+mod auditing;
+mod meshing;
+mod reading;
+pub mod words;
+
+pub use auditing::AuditIssue;
+pub use meshing::MeshIssue;
+pub use reading::ReadIssue;
+
+use crate::Source;
+use std::fmt;
+
+/// What an issue means for the result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Something was repaired or noticed; the result is complete.
+    Note,
+    /// Something was ignored or changed that may matter to the user; no geometry is missing.
+    Warning,
+    /// Geometry is missing or a promise is not kept: the run ends with exit code 1.
+    Error,
+}
+
+impl Severity {
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        }
+    }
+}
+
+/// What happened, by stage.
+///
+/// Lengths are millimetres unless a field says otherwise; the stage that makes the issue converts them.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum IssueKind {
+    /// Found while the file was read.
+    Read(ReadIssue),
+    /// Found while a face or edge was meshed.
+    Mesh(MeshIssue),
+    /// Found by the audit of the finished mesh.
+    Audit(AuditIssue),
+}
+
+impl IssueKind {
+    /// A stable name for programs to match, such as `unknown-surface`.
+    pub fn code(&self) -> &'static str {
+        match self {
+            IssueKind::Read(kind) => kind.code(),
+            IssueKind::Mesh(kind) => kind.code(),
+            IssueKind::Audit(kind) => kind.code(),
+        }
+    }
+}
+
+impl fmt::Display for IssueKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            IssueKind::Read(kind) => kind.fmt(f),
+            IssueKind::Mesh(kind) => kind.fmt(f),
+            IssueKind::Audit(kind) => kind.fmt(f),
+        }
+    }
+}
+
+impl From<ReadIssue> for IssueKind {
+    fn from(kind: ReadIssue) -> Self {
+        IssueKind::Read(kind)
+    }
+}
+
+impl From<MeshIssue> for IssueKind {
+    fn from(kind: MeshIssue) -> Self {
+        IssueKind::Mesh(kind)
+    }
+}
+
+impl From<AuditIssue> for IssueKind {
+    fn from(kind: AuditIssue) -> Self {
+        IssueKind::Audit(kind)
+    }
+}
+
+/// Something that was repaired, guessed, dropped or rejected, with the entity of the file that it concerns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Issue {
+    /// What it means for the result.
+    pub severity: Severity,
+    /// The entity and line in the file.
+    pub source: Source,
+    /// What happened.
+    pub kind: IssueKind,
+}
+
+impl Issue {
+    /// An issue about the entity at `source`.
+    pub fn new(severity: Severity, source: Source, kind: impl Into<IssueKind>) -> Self {
+        Self { severity, source, kind: kind.into() }
+    }
+}
+
+/// `#42 (line 48): gap of 5 mm between consecutive edges closed with a straight edge`.
+impl fmt::Display for Issue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.source == Source::default() {
+            return self.kind.fmt(f);
+        }
+        write!(f, "{}: {}", self.source, self.kind)
+    }
+}
