@@ -202,6 +202,8 @@ pub enum FormatArg {
     Ply,
     Obj,
     Glb,
+    /// glTF as text with its buffer embedded.
+    Gltf,
     #[value(name = "3mf")]
     ThreeMf,
 }
@@ -214,6 +216,7 @@ impl FormatArg {
             FormatArg::Ply => Format::Ply,
             FormatArg::Obj => Format::Obj,
             FormatArg::Glb => Format::Glb,
+            FormatArg::Gltf => Format::Gltf,
             FormatArg::ThreeMf => Format::ThreeMf,
         }
     }

@@ -350,7 +350,10 @@ impl Report {
             rounding: summary.rounding_mm,
         });
         self.warnings.extend(
-            summary.warnings.iter().map(|w| WarningEntry { message: w.clone(), ..WarningEntry::default() }),
+            summary
+                .warnings
+                .iter()
+                .map(|w| WarningEntry { message: w.to_string(), ..WarningEntry::default() }),
         );
     }
 }

@@ -162,7 +162,7 @@ fn format_of(output: &Path, format: Option<Format>) -> Result<Format, JobError> 
     let by_extension = || output.extension().and_then(|e| e.to_str()).and_then(Format::from_extension);
     format.or_else(by_extension).ok_or_else(|| JobError::Output {
         path: output.to_owned(),
-        reason: "the extension names no format that can be written (stl, ply, obj, glb, 3mf)".into(),
+        reason: "the extension names no format that can be written (stl, ply, obj, glb, gltf, 3mf)".into(),
     })
 }
 

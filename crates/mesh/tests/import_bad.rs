@@ -75,6 +75,29 @@ fn glb_accessors_beyond_the_file_are_refused() {
     }
 }
 
+/// A text file whose buffer has this URI.
+fn gltf(uri: &str) -> Vec<u8> {
+    format!(
+        r#"{{"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "buffers":[{{"byteLength":36,"uri":"{uri}"}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}]}}"#
+    )
+    .into_bytes()
+}
+
+#[test]
+fn buffers_of_text_files_must_be_embedded_and_complete() {
+    // 36 bytes in base64: (0, 0, 0), (1, 0, 0), (0, 1, 0).
+    let data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let soup = import_bytes(&gltf(&format!("data:application/octet-stream;base64,{data}")), "gltf").unwrap();
+    assert_eq!((soup.triangles.len(), soup.positions[2].to_array()), (1, [0.0, 1.0, 0.0]));
+    assert!(refusal(&gltf("part.bin"), "gltf").contains("another file"));
+    assert!(refusal(&gltf("data:;base64,***"), "gltf").contains("buffer is broken"));
+    assert!(refusal(&gltf("data:;base64,AAAA"), "gltf").contains("reaches beyond the file"));
+}
+
 #[test]
 fn trees_in_circles_are_refused() {
     let json = r#"{"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#;
@@ -83,7 +106,7 @@ fn trees_in_circles_are_refused() {
 
 #[test]
 fn what_is_no_mesh_is_named() {
-    for extension in ["stl", "obj", "ply", "glb", "3mf"] {
+    for extension in ["stl", "obj", "ply", "glb", "gltf", "3mf"] {
         for bytes in [&b""[..], b"\0", b"hello", b"solid", b"ISO-10303-21;\nHEADER;", &[0xff; 200]] {
             let sentence = refusal(bytes, extension);
             assert!(!sentence.contains('\n') && sentence.len() < 200, "{sentence}");

@@ -1,16 +1,31 @@
-//! The formats that can be written, and the unit and axes that a file states its coordinates in.
+//! The formats that can be written, and the unit and axes of a file's coordinates.
 
 use std::fmt;
 use std::str::FromStr;
 
 /// A mesh file format.
+///
+/// ```
+/// use chordal_write::Format;
+/// assert_eq!(Format::from_extension(".GLB"), Some(Format::Glb));
+/// assert!(Format::Glb.is_single_precision());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Format {
+    /// Binary STL: 32-bit coordinates, three vertices per triangle, nothing shared.
     StlBinary,
+    /// ASCII STL: named solids, coordinates in digits that keep all 64 bits.
     StlAscii,
+    /// glTF 2.0 in one binary file: tree, instances, colours, exact normals, face ids, 32-bit coordinates.
     Glb,
+    /// glTF 2.0 as JSON text with its buffer embedded; holds the same as [`Format::Glb`].
+    Gltf,
+    /// Wavefront OBJ: groups per face, exact normals, 64-bit coordinates; colours in a second file.
     Obj,
+    /// Binary PLY: 64-bit coordinates, face ids, colours.
     Ply,
+    /// 3MF: a compressed archive with instances, colours and a unit, 64-bit coordinates.
     ThreeMf,
 }
 
@@ -20,6 +35,7 @@ impl Format {
         match extension.trim_start_matches('.').to_ascii_lowercase().as_str() {
             "stl" => Some(Self::StlBinary),
             "glb" => Some(Self::Glb),
+            "gltf" => Some(Self::Gltf),
             "obj" => Some(Self::Obj),
             "ply" => Some(Self::Ply),
             "3mf" => Some(Self::ThreeMf),
@@ -32,6 +48,7 @@ impl Format {
         match self {
             Self::StlBinary | Self::StlAscii => "stl",
             Self::Glb => "glb",
+            Self::Gltf => "gltf",
             Self::Obj => "obj",
             Self::Ply => "ply",
             Self::ThreeMf => "3mf",
@@ -40,17 +57,22 @@ impl Format {
 
     /// Whether coordinates are rounded to 32-bit floats.
     pub fn is_single_precision(self) -> bool {
-        matches!(self, Self::StlBinary | Self::Glb)
+        self == Self::StlBinary || self.is_gltf()
     }
 
-    /// The unit written unless options say otherwise: metres in GLB, as its specification demands, else millimetres.
+    /// Whether the format is glTF 2.0, in binary or as text.
+    pub fn is_gltf(self) -> bool {
+        matches!(self, Self::Glb | Self::Gltf)
+    }
+
+    /// The unit written unless options say otherwise: metres in glTF, as its specification demands, else millimetres.
     pub fn default_unit(self) -> Unit {
-        if self == Self::Glb { Unit::Metre } else { Unit::Millimetre }
+        if self.is_gltf() { Unit::Metre } else { Unit::Millimetre }
     }
 
-    /// The axis that points up unless options say otherwise: Y in GLB, as its specification demands, else Z.
+    /// The axis that points up unless options say otherwise: Y in glTF, as its specification demands, else Z.
     pub fn default_up(self) -> UpAxis {
-        if self == Self::Glb { UpAxis::Y } else { UpAxis::Z }
+        if self.is_gltf() { UpAxis::Y } else { UpAxis::Z }
     }
 }
 
@@ -60,6 +82,7 @@ impl fmt::Display for Format {
             Self::StlBinary => "binary STL",
             Self::StlAscii => "ASCII STL",
             Self::Glb => "GLB",
+            Self::Gltf => "glTF",
             Self::Obj => "OBJ",
             Self::Ply => "PLY",
             Self::ThreeMf => "3MF",
@@ -70,17 +93,23 @@ impl fmt::Display for Format {
 /// A unit of length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Unit {
+    /// `um`, 0.001 mm.
     Micrometre,
+    /// `mm`.
     #[default]
     Millimetre,
+    /// `cm`, 10 mm.
     Centimetre,
+    /// `m`, 1000 mm.
     Metre,
+    /// `in`, 25.4 mm.
     Inch,
+    /// `ft`, 304.8 mm.
     Foot,
 }
 
 impl Unit {
-    /// How many millimetres one of it is.
+    /// The length of the unit in millimetres.
     pub fn millimetres(self) -> f64 {
         match self {
             Self::Micrometre => 0.001,
@@ -111,9 +140,9 @@ impl fmt::Display for Unit {
     }
 }
 
-/// A name that is no unit of length.
+/// A name that is not a unit of length.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no unit of length; use um, mm, cm, m, in or ft")]
+#[error("unknown unit of length `{0}` (use um, mm, cm, m, in or ft)")]
 pub struct UnknownUnit(pub String);
 
 impl FromStr for Unit {

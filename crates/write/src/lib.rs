@@ -1,8 +1,37 @@
-//! Writers of mesh files: STL, GLB, OBJ, PLY and 3MF from one [`Scene`].
+//! Writers of mesh files: STL, GLB, glTF, OBJ, PLY and 3MF from one [`Scene`].
 //!
-//! A vertex's file coordinates are its part's, times the placement (millimetres), times the change of unit and axes, all
-//! in 64 bits; only then a 32-bit format rounds. The same scene and options give the same bytes.
-//! `docs/formats.md` says what each format carries.
+//! [`to_bytes`] makes a file in memory, [`write_to`] writes to any [`Write`], [`write_scene`] replaces a file.
+//!
+//! A vertex's coordinates in the file are its part's, times the placement (millimetres), times the change of unit and
+//! axes, all in 64 bits; a 32-bit format rounds only the result. The same scene and options give the same bytes.
+//!
+//! ```
+//! use chordal_mesh::{PassThrough, Scene, SceneNode, ScenePart};
+//! use chordal_write::{Format, WriteOptions, to_bytes};
+//! use glam::{DAffine3, DVec3};
+//!
+//! let triangle = PassThrough {
+//!     points: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+//!     triangles: vec![[0, 1, 2]],
+//!     ..PassThrough::default()
+//! };
+//! let part = ScenePart { pass_through: vec![triangle], ..ScenePart::default() };
+//! let node = SceneNode {
+//!     name: String::new(),
+//!     transform: DAffine3::IDENTITY,
+//!     part: Some(0),
+//!     children: Vec::new(),
+//!     color: None,
+//! };
+//! let scene = Scene { parts: vec![part], nodes: vec![node], roots: vec![0], ..Scene::default() };
+//!
+//! let file = to_bytes(&scene, &WriteOptions::new(Format::StlBinary))?;
+//! assert_eq!(file.bytes.len(), 84 + 50);
+//! assert_eq!(file.summary.triangles, 1);
+//! # Ok::<(), chordal_write::WriteError>(())
+//! ```
+
+#![deny(missing_docs)]
 
 mod check;
 mod color;
@@ -10,7 +39,7 @@ mod error;
 mod flat;
 mod format;
 mod frame;
-mod glb;
+mod gltf;
 mod names;
 mod number;
 mod obj;
@@ -20,11 +49,14 @@ mod sink;
 mod stl;
 mod summary;
 mod threemf;
+mod warning;
 
-pub use error::WriteError;
+pub use check::{MeshFault, SceneFault};
+pub use error::{Countable, WriteError};
 pub use format::{Format, SolidPer, Unit, UnknownUnit, UpAxis};
 pub use options::WriteOptions;
 pub use summary::WriteSummary;
+pub use warning::WriteWarning;
 
 use chordal_mesh::Scene;
 use sink::{Counter, NewFile};
@@ -33,12 +65,54 @@ use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 use summary::Tally;
 
-/// Writes a scene to a file, which is replaced only once the new one is complete. OBJ puts its colours, if there are
-/// any, into a material library of the same name beside it.
+/// The name by which an OBJ file made in memory refers to its material library.
+const LIBRARY_NAME: &str = "model.mtl";
+
+/// A mesh file in memory.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Encoded {
+    /// The file's contents.
+    pub bytes: Vec<u8>,
+    /// The material library of an OBJ file with colours, to which the file refers by the library's name. Absent for
+    /// other formats and without colours.
+    pub library: Option<Library>,
+    /// What the file holds, and how far rounding moved it.
+    pub summary: WriteSummary,
+}
+
+/// A second file beside an OBJ file: its materials.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Library {
+    /// The file name that the OBJ file refers to: `model.mtl`.
+    pub name: String,
+    /// The library's contents.
+    pub bytes: Vec<u8>,
+}
+
+/// Makes a mesh file in memory.
 ///
 /// # Errors
-/// Where the file cannot be written, a coordinate is not finite, the format cannot hold as many triangles, or the scene
-/// contradicts itself. The file at `path`, if any, is untouched then.
+/// If a coordinate is not finite, the format cannot hold as many triangles, or the scene contradicts itself.
+pub fn to_bytes(scene: &Scene, options: &WriteOptions) -> Result<Encoded, WriteError> {
+    check::check_scene(scene)?;
+    let mut library = None;
+    if options.format == Format::Obj && obj::has_colors(scene, options) {
+        let mut bytes = Vec::new();
+        obj::write_library(scene, &mut bytes, options)?;
+        library = Some(Library { name: LIBRARY_NAME.to_owned(), bytes });
+    }
+    let mut bytes = Vec::new();
+    let name = library.as_ref().map(|l| l.name.as_str());
+    let summary = write_stream(scene, &mut bytes, name, options)?;
+    Ok(Encoded { bytes, library, summary })
+}
+
+/// Writes a scene to a file. A file at `path` is replaced only once the new one is complete. An OBJ file with colours
+/// gets a material library of the same name beside it.
+///
+/// # Errors
+/// As [`to_bytes`], and if a file cannot be created, written or renamed. A file at `path` is untouched then.
 pub fn write_scene(scene: &Scene, path: &Path, options: &WriteOptions) -> Result<WriteSummary, WriteError> {
     check::check_scene(scene)?;
     let in_file = |error: WriteError| match error {
@@ -52,7 +126,7 @@ pub fn write_scene(scene: &Scene, path: &Path, options: &WriteOptions) -> Result
     };
     let name = library.as_ref().map(|(name, _)| name.as_str());
     let summary = write_stream(scene, file.writer(), name, options).map_err(in_file)?;
-    // The library first: a mesh never names colours that are not there yet.
+    // The library first, so that the mesh never names a library that does not exist yet.
     if let Some((_, library)) = library {
         library.commit()?;
     }
@@ -60,10 +134,10 @@ pub fn write_scene(scene: &Scene, path: &Path, options: &WriteOptions) -> Result
     Ok(summary)
 }
 
-/// Writes a scene to any writer. OBJ gets no colours this way: they live in a second file.
+/// Writes a scene to any writer. An OBJ file gets no colours this way, as they need a second file: see [`to_bytes`].
 ///
 /// # Errors
-/// As [`write_scene`]; what was written before an error is incomplete.
+/// As [`to_bytes`], and if `out` fails. Bytes written before an error are incomplete.
 pub fn write_to(
     scene: &Scene,
     out: &mut impl Write,
@@ -84,11 +158,12 @@ fn write_stream(
     match options.format {
         Format::StlBinary => stl::write_binary(scene, &mut counter, options, &mut tally)?,
         Format::StlAscii => stl::write_ascii(scene, &mut counter, options, &mut tally)?,
-        Format::Glb => glb::write(scene, &mut counter, options, &mut tally)?,
+        Format::Glb => gltf::write_binary(scene, &mut counter, options, &mut tally)?,
+        Format::Gltf => gltf::write_text(scene, &mut counter, options, &mut tally)?,
         Format::Obj => obj::write(scene, &mut counter, library, options, &mut tally)?,
         Format::Ply => ply::write(scene, &mut counter, options, &mut tally)?,
         Format::ThreeMf => {
-            // An archive's headers are completed after its contents, so it is made in memory, compressed.
+            // The headers of an archive are completed after its contents, so the archive is made in memory.
             let mut archive = Cursor::new(Vec::new());
             threemf::write(scene, &mut archive, options, &mut tally)?;
             counter.write_all(archive.get_ref())?;
@@ -98,7 +173,7 @@ fn write_stream(
     Ok(tally.finish(counter.bytes, options))
 }
 
-/// The complete but not yet visible material library of an OBJ file, with its name; none without colours.
+/// The material library of an OBJ file, complete but not yet under its name, with that name; none without colours.
 fn new_library(
     scene: &Scene,
     path: &Path,

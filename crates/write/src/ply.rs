@@ -7,7 +7,7 @@
 use crate::flat::{Item, Patch, Remap, Source, UNUSED, items, remaps};
 use crate::names::one_line;
 use crate::summary::Tally;
-use crate::{Format, WriteError, WriteOptions, color};
+use crate::{Countable, Format, WriteError, WriteOptions, color};
 use chordal_mesh::Scene;
 use std::io::Write;
 
@@ -61,7 +61,11 @@ fn header(
     }
     let faces: u64 = items.iter().map(|i| i.part.mesh.faces.len() as u64).sum();
     // Indices and face ids are signed 32-bit numbers, and many readers count in them.
-    for (what, count) in [("vertices", vertices), ("triangles", triangles), ("faces", faces)] {
+    for (what, count) in [
+        (Countable::Vertices, vertices),
+        (Countable::Triangles, triangles),
+        (Countable::Faces, faces),
+    ] {
         if count > i32::MAX as u64 {
             return Err(WriteError::TooLarge { what, count, format: Format::Ply });
         }

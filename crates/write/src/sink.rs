@@ -6,10 +6,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Large enough that a mesh of megabytes needs few system calls.
+/// Bytes gathered before a system call: large enough that a mesh of megabytes needs few of them, small beside the mesh
+/// itself.
 const BUFFER: usize = 1 << 20;
 
-/// Counts the bytes that pass.
+/// A writer that counts the bytes written to it.
 #[derive(Debug)]
 pub(crate) struct Counter<W> {
     inner: W,
@@ -48,12 +49,12 @@ pub(crate) struct NewFile {
 }
 
 impl NewFile {
-    /// Starts a file in the folder of `path`, behind a link in the folder of what it points to.
+    /// Starts a file in the folder of `path`; if `path` is a link, in the folder of the file that it points to.
     pub fn create(path: &Path) -> Result<Self, WriteError> {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let error = |source| WriteError::File { path: path.to_owned(), source };
         if fs::metadata(&target).is_ok_and(|m| !m.is_file()) {
-            return Err(error(io::Error::other("it exists and is no plain file")));
+            return Err(WriteError::NotAFile { path: path.to_owned() });
         }
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,

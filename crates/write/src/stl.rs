@@ -8,7 +8,7 @@ use crate::frame::triangle_normal;
 use crate::names::{Unique, one_line};
 use crate::number::push_point;
 use crate::summary::Tally;
-use crate::{Format, SolidPer, WriteError, WriteOptions, color};
+use crate::{Countable, Format, SolidPer, WriteError, WriteOptions, color};
 use chordal_mesh::Scene;
 use glam::{DVec3, Vec3};
 use std::io::Write;
@@ -22,7 +22,7 @@ pub(crate) fn write_binary(
 ) -> Result<(), WriteError> {
     let items = items(scene, options);
     let count: u64 = items.iter().map(triangle_count).sum();
-    let small = |_| WriteError::TooLarge { what: "triangles", count, format: Format::StlBinary };
+    let small = |_| WriteError::TooLarge { what: Countable::Triangles, count, format: Format::StlBinary };
     out.write_all(&header(options))?;
     out.write_all(&u32::try_from(count).map_err(small)?.to_le_bytes())?;
     let mm = options.resolved_unit().millimetres();

@@ -4,7 +4,7 @@
 mod common;
 
 use chordal_mesh::{Scene, import_mesh};
-use chordal_write::{Format, SolidPer, Unit, UpAxis, WriteError, WriteOptions, write_scene};
+use chordal_write::{Format, MeshFault, SceneFault, SolidPer, Unit, UpAxis, WriteError, WriteOptions, to_bytes, write_scene};
 use common::*;
 use glam::{DAffine3, DMat3, DVec3};
 use proptest::prelude::*;
@@ -59,7 +59,7 @@ fn every_unit_and_axis_is_honoured_by_every_format() {
             for up in [UpAxis::Y, UpAxis::Z] {
                 let options = WriteOptions::new(format).with_unit(unit).with_up(up);
                 let mut soup = round_trip(&scene, &options);
-                let states_unit = matches!(format, Format::Ply | Format::Glb | Format::ThreeMf);
+                let states_unit = format.is_gltf() || matches!(format, Format::Ply | Format::ThreeMf);
                 assert_eq!(soup.unit_mm, states_unit.then(|| unit.millimetres()), "{format} {unit}");
                 soup.unit_mm = Some(unit.millimetres());
                 soup.y_up = up == UpAxis::Y;
@@ -162,7 +162,7 @@ fn files_replace_each_other_only_when_complete() {
         broken.nodes[4].transform.translation.x = 1e308;
         broken.nodes[0].transform.translation.x = 1e308;
         let error = write_scene(&broken, &path, &options);
-        if format != Format::Glb && format != Format::ThreeMf {
+        if !format.is_gltf() && format != Format::ThreeMf {
             assert!(matches!(error, Err(WriteError::NotFinite { .. })), "{format}: {error:?}");
             assert_eq!(fs::read(&path).unwrap(), before, "{format}");
         }
@@ -171,7 +171,7 @@ fn files_replace_each_other_only_when_complete() {
     let mut names: Vec<_> =
         fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names, ["out.3mf", "out.glb", "out.mtl", "out.obj", "out.ply", "out.stl"]);
+    assert_eq!(names, ["out.3mf", "out.glb", "out.gltf", "out.mtl", "out.obj", "out.ply", "out.stl"]);
     let obj = fs::read_to_string(folder.path().join("out.obj")).unwrap();
     let mtl = fs::read_to_string(folder.path().join("out.mtl")).unwrap();
     assert!(obj.contains("mtllib out.mtl"));
@@ -186,8 +186,35 @@ fn special_files_and_missing_folders_are_refused() {
     let options = WriteOptions::new(Format::Ply);
     for path in [folder.path().to_owned(), folder.path().join("none/out.ply")] {
         let error = write_scene(&cube(), &path, &options).unwrap_err();
-        assert!(matches!(error, WriteError::File { .. }), "{error}");
+        assert!(matches!(error, WriteError::File { .. } | WriteError::NotAFile { .. }), "{error}");
     }
+    let error = write_scene(&cube(), folder.path(), &options).unwrap_err();
+    assert!(matches!(error, WriteError::NotAFile { .. }), "{error}");
+}
+
+#[test]
+fn files_in_memory_are_the_files_on_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    for format in FORMATS {
+        // The library is named after the file, and `model` is its name in memory.
+        let path = folder.path().join(format!("model.{}", format.extension()));
+        let options = WriteOptions::new(format);
+        let summary = write_scene(&assembly(), &path, &options).unwrap();
+        let file = to_bytes(&assembly(), &options).unwrap();
+        assert_eq!(file.summary, summary, "{format}");
+        assert!(file.bytes == fs::read(&path).unwrap(), "{format}");
+        assert_eq!(file.library.is_some(), format == Format::Obj);
+        if let Some(library) = file.library {
+            assert_eq!(library.bytes, fs::read(folder.path().join(&library.name)).unwrap());
+        }
+    }
+    assert!(to_bytes(&cube(), &WriteOptions::new(Format::Obj)).unwrap().library.is_none());
+}
+
+#[test]
+fn gltf_text_holds_what_glb_holds() {
+    let text = round_trip(&assembly(), &WriteOptions::new(Format::Gltf));
+    assert_eq!(text, round_trip(&assembly(), &WriteOptions::new(Format::Glb)));
 }
 
 #[test]
@@ -202,10 +229,26 @@ fn inconsistent_scenes_are_refused() {
     let mut mesh = box_mesh(DVec3::ZERO, DVec3::ONE);
     mesh.faces[3].triangles[0][1] = 4;
     no_corner.parts[0].mesh = mesh.into();
-    for scene in [two_parents, circle, no_part, no_corner] {
+    let mut infinite = cube();
+    infinite.nodes[0].transform.translation.x = f64::NAN;
+    let broken = [
+        (two_parents, SceneFault::TwoParents { node: 0 }),
+        (circle, SceneFault::TwoParents { node: 0 }),
+        (no_part, SceneFault::UnknownPart { node: 0, part: 1 }),
+        (infinite, SceneFault::InfiniteTransform { node: 0 }),
+        (
+            no_corner,
+            SceneFault::Mesh {
+                part: 0,
+                name: "cube".to_owned(),
+                fault: MeshFault::UnknownCorner { face: 3, corner: 4, corners: 4 },
+            },
+        ),
+    ];
+    for (scene, wanted) in broken {
         for format in FORMATS {
             let error = chordal_write::write_to(&scene, &mut Vec::new(), &WriteOptions::new(format));
-            assert!(matches!(error, Err(WriteError::Scene(_))), "{format}");
+            assert!(matches!(error, Err(WriteError::Scene(ref found)) if *found == wanted), "{format}");
         }
     }
 }

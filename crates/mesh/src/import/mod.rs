@@ -1,11 +1,11 @@
-//! Reading meshes back: STL, OBJ, PLY, GLB and 3MF as a soup of welded triangles.
+//! Reading meshes back: STL, OBJ, PLY, GLB, glTF and 3MF as a soup of welded triangles.
 //!
 //! Points are welded where all bits of their coordinates agree, within one *domain* only: a solid of ASCII STL, an
 //! object of OBJ, a part of a PLY file of ours, a placed mesh of GLB, a build item of 3MF, else the whole file. Parts
 //! that touch stay apart so. Nothing is allocated by a count in a header before the file's length confirms it.
 
 mod bytes;
-mod glb;
+mod gltf;
 mod obj;
 mod ply;
 mod stl;
@@ -24,7 +24,7 @@ use weld::Builder;
 pub enum ImportError {
     #[error("cannot read {}: {source}", path.display())]
     File { path: PathBuf, source: io::Error },
-    #[error("`{0}` is no mesh format that is read; stl, obj, ply, glb and 3mf are")]
+    #[error("`{0}` is no mesh format that is read; stl, obj, ply, glb, gltf and 3mf are")]
     UnknownFormat(String),
     /// What is wrong with the file, and where.
     #[error("this is no valid {format} file: {what}")]
@@ -79,7 +79,7 @@ pub fn import_mesh(path: &Path) -> Result<TriangleSoup, ImportError> {
 }
 
 fn is_known(extension: &str) -> bool {
-    ["stl", "obj", "ply", "glb", "3mf"].contains(&extension)
+    ["stl", "obj", "ply", "glb", "gltf", "3mf"].contains(&extension)
 }
 
 /// Reads a mesh from memory; `extension` names its format in lower case without a dot.
@@ -92,7 +92,8 @@ pub fn import_bytes(bytes: &[u8], extension: &str) -> Result<TriangleSoup, Impor
         "stl" => ("STL", stl::read(bytes, &mut builder)),
         "obj" => ("OBJ", obj::read(bytes, &mut builder)),
         "ply" => ("PLY", ply::read(bytes, &mut builder)),
-        "glb" => ("GLB", glb::read(bytes, &mut builder)),
+        "glb" => ("GLB", gltf::read_binary(bytes, &mut builder)),
+        "gltf" => ("glTF", gltf::read_text(bytes, &mut builder)),
         "3mf" => ("3MF", threemf::read(bytes, &mut builder)),
         _ => return Err(ImportError::UnknownFormat(extension.to_owned())),
     };

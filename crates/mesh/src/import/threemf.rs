@@ -1,6 +1,6 @@
 //! 3MF: the meshes of every build item, through its components. Materials and other files in the archive are skipped.
 
-use super::glb::MOST_TRIANGLES;
+use super::gltf::MOST_TRIANGLES;
 use super::reverses;
 use super::weld::Builder;
 use super::xml::{Tag, tags, unescape};

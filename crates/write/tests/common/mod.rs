@@ -9,8 +9,15 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub const FORMATS: [Format; 6] =
-    [Format::StlBinary, Format::StlAscii, Format::Glb, Format::Obj, Format::Ply, Format::ThreeMf];
+pub const FORMATS: [Format; 7] = [
+    Format::StlBinary,
+    Format::StlAscii,
+    Format::Glb,
+    Format::Gltf,
+    Format::Obj,
+    Format::Ply,
+    Format::ThreeMf,
+];
 
 pub const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
 pub const GLASS: [f32; 4] = [0.0, 0.5, 1.0, 0.25];

@@ -198,4 +198,7 @@ pub(super) struct BufferView {
 #[serde(rename_all = "camelCase")]
 pub(super) struct Buffer {
     pub byte_length: usize,
+    /// The bytes as a data URI; absent in GLB, whose binary chunk holds them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uri: Option<String>,
 }

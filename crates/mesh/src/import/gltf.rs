@@ -1,19 +1,46 @@
-//! GLB: triangles of every placed mesh, in scene coordinates, with the face ids of `TM_brep_faces`.
+//! glTF 2.0, binary (GLB) or as text: triangles of every placed mesh, in scene coordinates, with the face ids of `TM_brep_faces`.
 
 use super::bytes::Cursor;
 use super::ply::unit_mm;
 use super::reverses;
 use super::weld::Builder;
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde_json::Value;
 
 /// More triangles than this are a small file that repeats itself without end, not a mesh.
 pub(super) const MOST_TRIANGLES: u64 = 200_000_000;
 
-pub(super) fn read(bytes: &[u8], builder: &mut Builder) -> Result<(), String> {
+/// Reads a binary file (GLB): the JSON in its first chunk, the buffer in its second.
+pub(super) fn read_binary(bytes: &[u8], builder: &mut Builder) -> Result<(), String> {
     let (json, binary) = chunks(bytes)?;
-    let root: Value = serde_json::from_slice(json).map_err(|e| format!("its JSON is broken: {e}"))?;
-    let file = File { root: &root, binary };
+    read(&parse(json)?, binary, builder)
+}
+
+/// Reads JSON text, whose one buffer must be embedded as a data URI.
+pub(super) fn read_text(bytes: &[u8], builder: &mut Builder) -> Result<(), String> {
+    let mut root = parse(bytes)?;
+    let binary = match root["buffers"].get_mut(0) {
+        Some(buffer) => embedded(&mut buffer["uri"])?,
+        None => Vec::new(),
+    };
+    read(&root, &binary, builder)
+}
+
+fn parse(json: &[u8]) -> Result<Value, String> {
+    serde_json::from_slice(json).map_err(|e| format!("its JSON is broken: {e}"))
+}
+
+/// Takes the bytes of a data URI out of the JSON, so that accessors find them as they find a binary chunk.
+fn embedded(uri: &mut Value) -> Result<Vec<u8>, String> {
+    let uri = uri.take();
+    let data = uri.as_str().and_then(|u| u.strip_prefix("data:")).and_then(|u| u.split_once(";base64,"));
+    let (_, text) = data.ok_or("its buffer lies in another file")?;
+    BASE64_STANDARD.decode(text).map_err(|e| format!("its embedded buffer is broken: {e}"))
+}
+
+fn read(root: &Value, binary: &[u8], builder: &mut Builder) -> Result<(), String> {
+    let file = File { root, binary };
     let extras = &root["asset"]["extras"];
     builder.unit_mm = extras["unit"].as_str().and_then(|u| unit_mm(u.as_bytes())).or(Some(1000.0));
     builder.y_up = extras["up"].as_str() != Some("z");

@@ -88,7 +88,7 @@ impl<'a> Meshes<'a> {
         root.accessors = self.data.accessors;
         root.buffer_views = self.data.views;
         if !self.data.bytes.is_empty() {
-            root.buffers = vec![json::Buffer { byte_length: self.data.bytes.len() }];
+            root.buffers = vec![json::Buffer { byte_length: self.data.bytes.len(), uri: None }];
         }
         (root, self.data.bytes)
     }

@@ -1,16 +1,17 @@
-//! GLB: glTF 2.0 in one binary file.
+//! glTF 2.0, in one binary file (GLB) or as JSON text with its buffer embedded.
 //!
 //! The tree of the scene becomes the tree of nodes; a part becomes one mesh however often it is placed, and one more
 //! per colour that an assembly gives it. A mesh has a primitive per colour, in the order of their first face. Vertices
 //! are split only where the exact normals of two corners differ. Every triangle of an exact face carries the face's
 //! index in its part, by the extension `TM_brep_faces` that cascadio writes and reads.
 //!
-//! Transforms between nodes are `F·T·F⁻¹`, with `F` the change to metres and to Y up, so no extra root is needed. A mirroring
-//! transform stays as it is: glTF has the renderer reverse the winding where the determinant is negative.
+//! Transforms between nodes are `F·T·F⁻¹`, with `F` the change to metres and to Y up, so no extra root is needed. A
+//! mirroring transform stays as it is: by the specification the renderer reverses the winding where the determinant is
+//! negative.
 //!
-//! Coordinates are 32-bit floats, the numbers of node matrices decimal. Where a part lies far from its own origin, its
-//! mesh is moved to the centre of its box and its node moves it back (see [`origin_of`]): rounding is relative
-//! to the part's size then, not to its distance.
+//! Coordinates are 32-bit floats, the numbers of node matrices decimal. If a part lies far from its own origin, its mesh
+//! is moved to the centre of its box and its node moves it back (see [`origin_of`]): rounding is then relative to the
+//! part's size, not to its distance from the origin.
 
 mod buffer;
 mod json;
@@ -19,22 +20,53 @@ mod surfaces;
 
 use crate::frame::Frame;
 use crate::summary::Tally;
-use crate::{Format, UpAxis, WriteError, WriteOptions};
+use crate::{Countable, Format, UpAxis, WriteError, WriteOptions, WriteWarning};
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use chordal_mesh::{PlacedPart, Scene};
 use glam::{DAffine3, DMat3, DVec3};
 use mesh::{Meshes, Variant};
 use std::io::Write;
 
-/// A column pair whose cosine is above this makes a matrix a shear, which glTF forbids. Files state directions with
-/// as few as six digits.
+/// The largest cosine between two columns of a matrix that is still taken for a rotation with scale.
+///
+/// glTF forbids shears. Files give directions with as few as six digits, so a smaller value would call those rotations
+/// shears; a larger one would let visible shears pass without a warning.
 const SHEAR: f64 = 1e-4;
 
-pub(crate) fn write(
+/// Writes JSON and buffer as the two chunks of one binary file (GLB).
+pub(crate) fn write_binary(
     scene: &Scene,
     out: &mut impl Write,
     options: &WriteOptions,
     tally: &mut Tally,
 ) -> Result<(), WriteError> {
+    let (root, bytes) = encode(scene, options, tally)?;
+    write_chunks(&root, &bytes, out)
+}
+
+/// Writes JSON with the buffer embedded as base64, so that one text file holds everything.
+pub(crate) fn write_text(
+    scene: &Scene,
+    out: &mut impl Write,
+    options: &WriteOptions,
+    tally: &mut Tally,
+) -> Result<(), WriteError> {
+    let (mut root, bytes) = encode(scene, options, tally)?;
+    if let Some(buffer) = root.buffers.first_mut() {
+        let mut uri = "data:application/octet-stream;base64,".to_owned();
+        BASE64_STANDARD.encode_string(&bytes, &mut uri);
+        buffer.uri = Some(uri);
+    }
+    serde_json::to_writer(out, &root).map_err(std::io::Error::from)?;
+    Ok(())
+}
+
+/// The JSON tree and the bytes of its one buffer.
+fn encode(
+    scene: &Scene,
+    options: &WriteOptions,
+    tally: &mut Tally,
+) -> Result<(json::Root, Vec<u8>), WriteError> {
     let frame = Frame::new(options);
     let mut meshes = Meshes::new(scene, frame, options);
     let mut nodes = bare_nodes(scene, frame, tally);
@@ -43,7 +75,7 @@ pub(crate) fn write(
         attach(&mut nodes, &placed, variant);
     }
     tally.vertices = meshes.vertices;
-    let root = meshes.into_root(|meshes| json::Root {
+    Ok(meshes.into_root(|meshes| json::Root {
         asset: asset(options),
         extensions_used: if meshes.has_faces { vec!["TM_brep_faces"] } else { Vec::new() },
         scene: 0,
@@ -54,9 +86,7 @@ pub(crate) fn write(
         accessors: Vec::new(),
         buffer_views: Vec::new(),
         buffers: Vec::new(),
-    });
-    let (root, bytes) = root;
-    write_chunks(&root, &bytes, out)
+    }))
 }
 
 fn asset(options: &WriteOptions) -> json::Asset {
@@ -81,7 +111,7 @@ fn bare_nodes(scene: &Scene, frame: Frame, tally: &mut Tally) -> Vec<json::Node>
     };
     let nodes = scene.nodes.iter().map(node).collect();
     if sheared > 0 {
-        tally.warnings.push(format!("{sheared} placements shear their parts, which glTF does not allow"));
+        tally.warnings.push(WriteWarning::Sheared { placements: sheared });
     }
     nodes
 }
@@ -134,7 +164,7 @@ fn write_chunks(root: &json::Root, bytes: &[u8], out: &mut impl Write) -> Result
     text.resize(text.len().next_multiple_of(4), b' ');
     let binary = if bytes.is_empty() { 0 } else { 8 + bytes.len() };
     let total = 12 + 8 + text.len() + binary;
-    let too_large = |_| WriteError::TooLarge { what: "bytes", count: total as u64, format: Format::Glb };
+    let too_large = |_| WriteError::TooLarge { what: Countable::Bytes, count: total as u64, format: Format::Glb };
     let total = u32::try_from(total).map_err(too_large)?;
     out.write_all(b"glTF")?;
     for number in [2, total, text.len() as u32] {
