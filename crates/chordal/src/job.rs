@@ -155,7 +155,8 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
 
     // 7. Write.
     job.tell(Progress::Writing);
-    let scene = scene(&model, parts.iter().map(|p| p.mesh.clone()).collect(), format.is_some_and(Format::is_gltf));
+    let scene =
+        scene(&model, parts.iter().map(|p| p.mesh.clone()).collect(), format.is_some_and(Format::is_gltf));
     report.area = area(&scene);
     if let (Some(output), Some(format)) = (&job.output, format) {
         let summary = ledger
@@ -254,7 +255,8 @@ fn output_format(job: &Job) -> Result<Option<Format>, JobError> {
         Some(format) => Ok(Some(format)),
         None => Err(JobError::Output {
             path: output.clone(),
-            reason: "the extension names no format that can be written (stl, ply, obj, glb, gltf, 3mf)".into(),
+            reason: "the extension names no format that can be written (stl, ply, obj, glb, gltf, 3mf)"
+                .into(),
         }),
     }
 }

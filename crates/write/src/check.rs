@@ -88,7 +88,9 @@ impl fmt::Display for SceneFault {
             Self::UnknownNode { node } => write!(f, "node {node} does not exist"),
             Self::TwoParents { node } => write!(f, "node {node} has two parents"),
             Self::InfiniteTransform { node } => write!(f, "the transform of node {node} is not finite"),
-            Self::UnknownPart { node, part } => write!(f, "node {node} places part {part}, which does not exist"),
+            Self::UnknownPart { node, part } => {
+                write!(f, "node {node} places part {part}, which does not exist")
+            }
             Self::Mesh { part, name, fault } => write!(f, "part {part} (`{name}`): {fault}"),
         }
     }
@@ -119,7 +121,11 @@ impl std::error::Error for SceneFault {}
 pub(crate) fn check_scene(scene: &Scene) -> Result<(), SceneFault> {
     check_tree(scene)?;
     for (number, part) in scene.parts.iter().enumerate() {
-        check_part(part).map_err(|fault| SceneFault::Mesh { part: number, name: part.name.clone(), fault })?;
+        check_part(part).map_err(|fault| SceneFault::Mesh {
+            part: number,
+            name: part.name.clone(),
+            fault,
+        })?;
     }
     Ok(())
 }

@@ -61,11 +61,9 @@ fn header(
     }
     let faces: u64 = items.iter().map(|i| i.part.mesh.faces.len() as u64).sum();
     // Indices and face ids are signed 32-bit numbers, and many readers count in them.
-    for (what, count) in [
-        (Countable::Vertices, vertices),
-        (Countable::Triangles, triangles),
-        (Countable::Faces, faces),
-    ] {
+    for (what, count) in
+        [(Countable::Vertices, vertices), (Countable::Triangles, triangles), (Countable::Faces, faces)]
+    {
         if count > i32::MAX as u64 {
             return Err(WriteError::TooLarge { what, count, format: Format::Ply });
         }

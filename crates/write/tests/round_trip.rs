@@ -4,7 +4,9 @@
 mod common;
 
 use chordal_mesh::{Scene, import_mesh};
-use chordal_write::{Format, MeshFault, SceneFault, SolidPer, Unit, UpAxis, WriteError, WriteOptions, to_bytes, write_scene};
+use chordal_write::{
+    Format, MeshFault, SceneFault, SolidPer, Unit, UpAxis, WriteError, WriteOptions, to_bytes, write_scene,
+};
 use common::*;
 use glam::{DAffine3, DMat3, DVec3};
 use proptest::prelude::*;

@@ -164,7 +164,8 @@ fn write_chunks(root: &json::Root, bytes: &[u8], out: &mut impl Write) -> Result
     text.resize(text.len().next_multiple_of(4), b' ');
     let binary = if bytes.is_empty() { 0 } else { 8 + bytes.len() };
     let total = 12 + 8 + text.len() + binary;
-    let too_large = |_| WriteError::TooLarge { what: Countable::Bytes, count: total as u64, format: Format::Glb };
+    let too_large =
+        |_| WriteError::TooLarge { what: Countable::Bytes, count: total as u64, format: Format::Glb };
     let total = u32::try_from(total).map_err(too_large)?;
     out.write_all(b"glTF")?;
     for number in [2, total, text.len() as u32] {
