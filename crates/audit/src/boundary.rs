@@ -5,7 +5,7 @@
 //! that is missing ends where the face has no edge.
 
 use crate::halves::Half;
-use crate::part::Context;
+use crate::context::Context;
 use chordal_brep::{Face, Loop};
 use chordal_mesh::FaceMesh;
 

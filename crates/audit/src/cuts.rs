@@ -6,7 +6,7 @@
 //! affine map L of the sliver onto the edge (see `chordal_nurbs::facet_bound` for the formula along one direction), or, where
 //! the sides are a hair apart on either side of a crease, its width, beyond what bounds the triangles at its sides.
 
-use crate::face::Chart;
+use crate::chart::Chart;
 use crate::halves::Half;
 use chordal_nurbs::{DVec2, DVec3, Piece, Surface, SurfaceBounds, UvBox};
 

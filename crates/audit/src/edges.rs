@@ -3,18 +3,14 @@
 //! The parameter of each sample is found again from its position, so that the bound of each chord rests on nothing that
 //! the mesher said.
 
-use crate::report::{Problem, ProblemKind, Subject};
-use chordal_brep::{Edge, Part};
+use crate::precision::{ROUNDING, curve_magnitude};
+use crate::report::{Problem, Subject};
+use chordal_brep::issue::PolylineDefect;
+use chordal_brep::{AuditIssue, Edge, Part};
 use chordal_mesh::{Origin, PartMesh};
 use chordal_nurbs::{Curve, CurveInverter, DVec3, Range};
 use rayon::prelude::*;
 use std::cmp::Ordering;
-
-/// Distances below this part of the tolerance are charged to the gap and not called misplaced.
-pub(crate) const CHARGED: f64 = 1e-3;
-
-/// Rounding of positions, relative to the largest number that they were computed from.
-pub(crate) const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// What was recomputed about one edge.
 #[derive(Clone, Debug, Default)]
@@ -27,13 +23,24 @@ pub(crate) struct EdgeAudit {
     pub problem: Option<Problem>,
 }
 
+/// How exactly the samples of an edge can be checked, in the units of the part.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgePrecision {
+    /// The largest coordinate of the mesh.
+    pub scale: f64,
+    /// A sample farther from its curve is misplaced.
+    pub allowed: f64,
+    /// Millimetres in one unit of the part.
+    pub millimetres: f64,
+}
+
 /// Audits the polylines of all edges.
-pub(crate) fn audit_edges(part: &Part, mesh: &PartMesh, scale: f64, allowed: f64) -> Vec<EdgeAudit> {
+pub(crate) fn audit_edges(part: &Part, mesh: &PartMesh, precision: EdgePrecision) -> Vec<EdgeAudit> {
     (0..part.edges.len())
         .into_par_iter()
         .with_min_len(64)
         .map(|e| match mesh.edges.get(e) {
-            Some(line) if !line.is_empty() => audit_edge(part, mesh, e, line, scale, allowed),
+            Some(line) if !line.is_empty() => audit_edge(part, mesh, e, line, precision),
             _ => EdgeAudit::default(),
         })
         .collect()
@@ -44,25 +51,24 @@ fn audit_edge(
     mesh: &PartMesh,
     index: usize,
     line: &[u32],
-    scale: f64,
-    allowed: f64,
+    precision: EdgePrecision,
 ) -> EdgeAudit {
     let edge = &part.edges[index];
     let mut audit = EdgeAudit::default();
-    if let Some(what) = wrong_origins(mesh, edge, index, line) {
-        audit.problem = Some(problem(edge, index, ProblemKind::BrokenPolyline, what));
+    if let Some(defect) = wrong_origins(mesh, edge, index, line) {
+        audit.problem = Some(problem(edge, index, AuditIssue::BrokenPolyline(defect)));
         return audit;
     }
     let Some(curve) = edge.curve.as_deref() else {
-        let what = "is a single point and has a polyline".to_owned();
-        audit.problem = Some(problem(edge, index, ProblemKind::BrokenPolyline, what));
+        let defect = PolylineDefect::NoCurve;
+        audit.problem = Some(problem(edge, index, AuditIssue::BrokenPolyline(defect)));
         return audit;
     };
     let at = |i: usize| mesh.positions[line[i] as usize];
     let last = line.len() - 1;
     let ends = [edge.range.start, edge.range.end].map(|t| curve.point(t));
     audit.gap = at(0).distance(ends[0]).max(at(last).distance(ends[1]));
-    let rounding = ROUNDING * (scale + magnitude(curve));
+    let rounding = ROUNDING * (precision.scale + curve_magnitude(curve));
     let mut tracer = Tracer { curve, range: edge.range, t: edge.range.start, p: ends[0], rounding };
     for i in 1..=last {
         let before = tracer.t;
@@ -71,17 +77,17 @@ fn audit_edge(
             if distance > rounding {
                 audit.gap = audit.gap.max(distance);
             }
-            if distance > rounding + allowed {
+            if distance > rounding + precision.allowed {
                 audit.misplaced += 1;
-                let what = format!("has a vertex {distance:.3e} off its curve");
-                audit.problem = Some(problem(edge, index, ProblemKind::MisplacedVertex, what));
+                let distance = distance * precision.millimetres;
+                audit.problem = Some(problem(edge, index, AuditIssue::MisplacedEdgeSample { distance }));
             }
         } else {
             tracer.t = edge.range.end;
         }
         if tracer.t.partial_cmp(&before) != Some(Ordering::Greater) {
-            let what = format!("is not sampled in order at chord {i}");
-            audit.problem.get_or_insert(problem(edge, index, ProblemKind::BrokenPolyline, what));
+            let issue = AuditIssue::BrokenPolyline(PolylineDefect::Unordered { chord: i });
+            audit.problem.get_or_insert(problem(edge, index, issue));
             audit.sag = vec![f64::INFINITY; last];
             return audit;
         }
@@ -90,18 +96,17 @@ fn audit_edge(
     audit
 }
 
-fn problem(edge: &Edge, index: usize, kind: ProblemKind, what: String) -> Problem {
-    let sentence = format!("edge {} {what}", edge.source);
-    Problem { subject: Subject::Edge(index as u32), kind, sentence }
+fn problem(edge: &Edge, index: usize, issue: AuditIssue) -> Problem {
+    Problem::new(Subject::Edge(index as u32), edge.source, issue)
 }
 
 /// A polyline runs from the start vertex over the samples 1, 2, … to the end vertex.
-fn wrong_origins(mesh: &PartMesh, edge: &Edge, index: usize, line: &[u32]) -> Option<String> {
+fn wrong_origins(mesh: &PartMesh, edge: &Edge, index: usize, line: &[u32]) -> Option<PolylineDefect> {
     let last = line.len() - 1;
     if last == 0 {
-        return Some("has a polyline of one point".into());
+        return Some(PolylineDefect::OnePoint);
     }
-    let wrong = (0..=last).find(|&i| {
+    let place = (0..=last).find(|&i| {
         let wanted = match i {
             0 => Origin::Vertex(edge.start.0),
             i if i == last => Origin::Vertex(edge.end.0),
@@ -109,23 +114,7 @@ fn wrong_origins(mesh: &PartMesh, edge: &Edge, index: usize, line: &[u32]) -> Op
         };
         mesh.origins[line[i] as usize] != wanted
     })?;
-    Some(format!("does not have its own sample at place {wrong} of its polyline"))
-}
-
-/// The size of the numbers that a curve is evaluated from.
-fn magnitude(curve: &Curve) -> f64 {
-    match curve {
-        Curve::Circle { frame, radius } => frame.origin.length() + radius.abs(),
-        Curve::Ellipse { frame, a, b } | Curve::Hyperbola { frame, a, b } => {
-            frame.origin.length() + a.abs().max(b.abs())
-        }
-        Curve::Parabola { frame, focal } => frame.origin.length() + focal.abs(),
-        Curve::Line { origin, .. } => origin.length(),
-        Curve::Composite(segments) => segments.iter().map(|s| magnitude(&s.curve)).fold(0.0, f64::max),
-        Curve::Offset { basis, distance, .. } => magnitude(basis) + distance.abs(),
-        Curve::OnSurface { surface, .. } => crate::face::magnitude(surface),
-        _ => 0.0,
-    }
+    Some(PolylineDefect::ForeignSample { place })
 }
 
 /// Finds the parameters of points that follow each other along a curve.

@@ -1,156 +1,24 @@
 //! One face: its corners lie on the surface, its triangles cover it once, and each is within its bound.
 
 use crate::boundary::{Boundary, boundary};
-use crate::edges::ROUNDING;
-use crate::halves::{Half, Halves};
-use crate::part::Context;
+use crate::chart::{Chart, exact, turn, turned_triangles};
+use crate::context::Context;
+use crate::findings::{FaceFindings, Log};
+use crate::halves::{Half, Halves, half_key};
+use crate::precision::CHUNK;
 use crate::prove;
-use crate::report::{FaceAudit, Problem, ProblemKind, Subject};
-use crate::shell::half_key;
-use chordal_brep::{Face, FaceGeometry, Loop};
+use crate::report::FaceAudit;
+use chordal_brep::issue::MeshDefect;
+use chordal_brep::{AuditIssue, Face, FaceGeometry, Loop};
 use chordal_mesh::{FaceMesh, Origin};
-use chordal_nurbs::{DVec2, DVec3, Pole, Surface, SurfaceInverter, UvBox, Wrap};
+use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceInverter};
 use rayon::prelude::*;
-use std::borrow::Cow;
 
 /// Edges shorter than this share of the tolerance may turn by any angle: at singular points some always do.
 const TURN_LENGTH: f64 = 0.1;
 
-/// Triangles or corners handled by one task.
-pub(crate) const CHUNK: usize = 4096;
-
 /// Normals are recomputed to this.
 const NORMAL: f64 = 1e-6;
-
-/// What was found out about one face.
-#[derive(Debug, Default)]
-pub(crate) struct FaceFindings {
-    pub audit: FaceAudit,
-    /// The recomputed error before the rounding of the written coordinates; NaN where nothing is proven.
-    pub error: f64,
-    /// The same without what is at poles, where the mesher may go by other parameters than it writes.
-    pub claimable: f64,
-    /// Largest distance of a corner from the surface.
-    pub surface_gap: f64,
-    pub rounding: f64,
-    pub degenerate: usize,
-    pub duplicates: usize,
-    pub misplaced: usize,
-    /// The share of the enclosed volume.
-    pub volume: f64,
-    /// Half-edges between positions that other faces may have, too.
-    pub shared: Vec<(u64, bool)>,
-    /// Triangles over such positions only, sorted corners.
-    pub shared_triangles: Vec<[u32; 3]>,
-    /// Every triangle faces against the sense of the face, and no loop says so either.
-    pub turned_over: bool,
-    pub problems: Vec<Problem>,
-}
-
-/// A face's mesh in the parameters of its surface.
-pub(crate) struct Chart<'a> {
-    pub surface: &'a Surface,
-    pub mesh: &'a FaceMesh,
-    pub uv_box: UvBox,
-    pub wrap: Wrap,
-    periods: [Option<f64>; 2],
-    poles: Vec<Pole>,
-    /// The surface at every corner.
-    pub xyz: Vec<DVec3>,
-    /// Rounding of points on this surface.
-    pub rounding: f64,
-    /// Triangles run clockwise in the chart.
-    pub turned: bool,
-}
-
-fn turn(mesh: &FaceMesh, t: &[u32; 3]) -> f64 {
-    let [a, b, c] = t.map(|c| mesh.corners[c as usize].uv).map(|uv| robust::Coord { x: uv.x, y: uv.y });
-    robust::orient2d(a, b, c)
-}
-
-/// How many triangles run clockwise in the chart.
-fn turned_triangles(mesh: &FaceMesh) -> usize {
-    mesh.triangles.iter().filter(|t| turn(mesh, t) < 0.0).count()
-}
-
-/// The size of the numbers that a surface is evaluated from, beyond the size of the mesh on it.
-pub(crate) fn magnitude(surface: &Surface) -> f64 {
-    match surface {
-        Surface::Plane { frame } => frame.origin.length(),
-        Surface::Cylinder { frame, radius }
-        | Surface::Cone { frame, radius, .. }
-        | Surface::Sphere { frame, radius } => frame.origin.length() + radius.abs(),
-        Surface::Torus { frame, major, minor } => frame.origin.length() + major.abs() + minor.abs(),
-        Surface::Offset { basis, distance } => magnitude(basis) + distance.abs(),
-        Surface::Revolution { axis_origin, .. } => axis_origin.length(),
-        _ => 0.0,
-    }
-}
-
-impl<'a> Chart<'a> {
-    fn new(context: &Context<'_>, surface: &'a Surface, mesh: &'a FaceMesh) -> Self {
-        Self {
-            surface,
-            mesh,
-            uv_box: UvBox::from_points(mesh.corners.iter().map(|c| c.uv)),
-            wrap: Wrap::of(surface),
-            periods: surface.periods(),
-            poles: surface.poles_within(context.same_point),
-            xyz: Vec::new(),
-            rounding: ROUNDING * (context.scale + magnitude(surface)),
-            turned: false,
-        }
-    }
-
-    pub fn point(&self, p_uv: DVec2) -> DVec3 {
-        self.surface.point(self.wrap.apply(p_uv))
-    }
-
-    /// The nearest vector of whole periods.
-    pub fn whole_turns(&self, d: DVec2) -> DVec2 {
-        let turn = |d: f64, period: Option<f64>| period.map_or(0.0, |p| p * (d / p).round());
-        DVec2::new(turn(d.x, self.periods[0]), turn(d.y, self.periods[1]))
-    }
-
-    /// The axis of the pole that a corner lies on.
-    pub fn pole_axis(&self, corner: u32) -> Option<usize> {
-        let uv = self.mesh.corners[corner as usize].uv;
-        let at = |pole: &&Pole| {
-            let (t, axis) = (uv[pole.axis], pole.axis);
-            let off = t - pole.value;
-            let off = off - self.periods[axis].map_or(0.0, |p| p * (off / p).round());
-            off.abs() <= 1e-9 * (t.abs() + pole.value.abs() + self.uv_box.size()[axis])
-        };
-        self.poles.iter().find(at).map(|pole| pole.axis)
-    }
-
-    /// One end of the half-edge lies on a pole.
-    pub fn touches_pole(&self, half: &Half) -> bool {
-        self.pole_axis(half.a).or(self.pole_axis(half.b)).is_some()
-    }
-
-    /// The corner of a triangle that is its only one on a pole.
-    pub fn fan_corner(&self, triangle: &[u32; 3]) -> Option<usize> {
-        if self.poles.is_empty() || matches!(self.surface, Surface::Sphere { .. } | Surface::Cone { .. }) {
-            return None;
-        }
-        let at = triangle.map(|c| self.pole_axis(c).is_some());
-        let only = at.iter().filter(|&&a| a).count() == 1;
-        at.iter().position(|&a| a && only)
-    }
-
-    pub fn is_fan(&self, triangle: u32) -> bool {
-        self.fan_corner(&self.mesh.triangles[triangle as usize]).is_some()
-    }
-}
-
-/// The surface that bounds can be given for: offsets of elementary surfaces are elementary themselves.
-fn exact(surface: &Surface) -> Cow<'_, Surface> {
-    match surface {
-        Surface::Offset { .. } => Cow::Owned(surface.clone().simplified()),
-        other => Cow::Borrowed(other),
-    }
-}
 
 /// Audits one face.
 pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
@@ -160,10 +28,10 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
         audit: FaceAudit { face: index as u32, triangles: mesh.triangles.len(), ..FaceAudit::default() },
         ..FaceFindings::default()
     };
-    let mut log = Log { index, face, problems: Vec::new() };
+    let mut log = Log::new(index, face);
     if mesh.triangles.is_empty() {
         if !context.known_missing(index) {
-            log.add(ProblemKind::MissingFace, "has no triangles".into());
+            log.add(AuditIssue::MissingFace);
         }
         found.audit.proven_error = f64::NAN;
         found.error = f64::NAN;
@@ -171,7 +39,7 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
         return found;
     }
     let FaceGeometry::Surface(surface) = &face.geometry else {
-        log.add(ProblemKind::Malformed, "has triangles and no surface".into());
+        log.add(AuditIssue::MalformedMesh(MeshDefect::NoSurface));
         found.problems = log.problems;
         return found;
     };
@@ -187,26 +55,12 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     check_boundary(context, &chart, &bounds_of, &mut log);
     gather_shared(context, mesh, &halves, &mut found);
     if found.duplicates > 0 {
-        log.add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
+        log.add(AuditIssue::DuplicateTriangles { triangles: found.duplicates });
     }
     prove::prove(context, &chart, &bounds_of, &mut found, &mut log);
     found.audit.proven_error = found.error + context.options.coordinate_rounding;
     found.problems = log.problems;
     found
-}
-
-/// Collects the problems of one face.
-pub(crate) struct Log<'a> {
-    pub index: usize,
-    face: &'a Face,
-    problems: Vec<Problem>,
-}
-
-impl Log<'_> {
-    pub fn add(&mut self, kind: ProblemKind, what: String) {
-        let sentence = format!("face {} {what}", self.face.source);
-        self.problems.push(Problem { subject: Subject::Face(self.index as u32), kind, sentence });
-    }
 }
 
 /// What the corners of one task showed.
@@ -260,14 +114,11 @@ fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceF
     found.audit.gap =
         found.audit.gap.max(loop_edges(log.face).map(|e| context.edges[e].gap).fold(0.0, f64::max));
     if found.misplaced > 0 {
-        let what = format!(
-            "has {} vertices that are not where its parameters say, up to {farthest:.3e} off",
-            found.misplaced
-        );
-        log.add(ProblemKind::MisplacedVertex, what);
+        let distance = context.mm(farthest);
+        log.add(AuditIssue::MisplacedVertices { vertices: found.misplaced, distance });
     }
     if wrong > 0 {
-        log.add(ProblemKind::WrongNormal, format!("has {wrong} normals that are not the surface's"));
+        log.add(AuditIssue::WrongNormals { corners: wrong });
     }
 }
 
@@ -361,20 +212,16 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
     }
     found.audit.max_angle = least.clamp(-1.0, 1.0).acos();
     if found.degenerate > 0 {
-        log.add(ProblemKind::DegenerateTriangle, format!("has {} triangles without area", found.degenerate));
+        log.add(AuditIssue::DegenerateTriangles { triangles: found.degenerate });
     }
     found.audit.leaning = against;
     if folded > 0 {
-        log.add(ProblemKind::FoldedTriangle, format!("has {folded} triangles turned over in its parameters"));
+        log.add(AuditIssue::InvertedTriangles { triangles: folded });
     }
     if let Some(limit) =
         context.options.angle.filter(|&l| found.audit.max_angle > l * (1.0 + NORMAL) + NORMAL)
     {
-        let (is, limit) = (found.audit.max_angle.to_degrees(), limit.to_degrees());
-        log.add(
-            ProblemKind::OverAngle,
-            format!("turns by {is:.3}° along a mesh edge, over the limit of {limit:.3}°"),
-        );
+        log.add(AuditIssue::OverAngle { angle: found.audit.max_angle, limit });
     }
 }
 
@@ -408,17 +255,12 @@ fn is_natural(chart: &Chart<'_>, face: &Face, half: &Half) -> bool {
 
 fn check_boundary(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary, log: &mut Log<'_>) {
     if bounds.missing > 0 {
-        let edge = bounds.missing_edge.map_or(String::new(), |e| {
-            format!(", the first of edge {}", context.part.edges[e as usize].source)
-        });
-        log.add(
-            ProblemKind::MissingChord,
-            format!("is not bounded by {} chords of its edges{edge}", bounds.missing),
-        );
+        let edge = bounds.missing_edge.map(|e| context.part.edges[e as usize].source);
+        log.add(AuditIssue::MissingChords { chords: bounds.missing, edge });
     }
     let stray = bounds.stray.iter().filter(|h| !is_natural(chart, log.face, h)).count();
     if stray > 0 {
-        log.add(ProblemKind::StrayBoundary, format!("ends at {stray} places where it has no edge"));
+        log.add(AuditIssue::StrayBoundary { sides: stray });
     }
 }
 

@@ -12,6 +12,12 @@ pub(crate) struct Half {
     pub side: u8,
 }
 
+/// A half-edge between positions as a sortable key: both ends, then the direction.
+pub(crate) fn half_key(from: u32, to: u32) -> (u64, bool) {
+    let (low, high) = (from.min(to), from.max(to));
+    (u64::from(low) << 32 | u64::from(high), from > to)
+}
+
 /// Half-edges of one face.
 #[derive(Debug, Default)]
 pub(crate) struct Halves {

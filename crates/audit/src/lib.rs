@@ -6,13 +6,17 @@
 //! Of two meshes of which nothing else is known, [`largest_distance`] gives the distance by branch and bound.
 
 mod boundary;
+mod chart;
+mod context;
 mod cuts;
 mod distance;
 mod edges;
 mod face;
 mod fan;
+mod findings;
 mod halves;
 mod part;
+mod precision;
 mod prove;
 mod report;
 mod shell;
@@ -20,5 +24,5 @@ mod triangle_tree;
 
 pub use distance::{Distance, largest_distance};
 pub use part::audit_part;
-pub use report::{AuditOptions, Claim, FaceAudit, PartAudit, Problem, ProblemKind, ShellAudit, Subject};
+pub use report::{AuditOptions, Claim, FaceAudit, PartAudit, Problem, ShellAudit, Subject};
 pub use triangle_tree::TriangleTree;

@@ -1,14 +1,18 @@
 //! The audit of one part, top to bottom: well-formed → edges → faces → shells.
 
-use crate::edges::{CHARGED, EdgeAudit, audit_edges};
-use crate::face::{FaceFindings, audit_face};
-use crate::prove::AIM;
-use crate::report::{AuditOptions, Claim, PartAudit, Problem, ProblemKind, Subject};
+use crate::context::Context;
+use crate::edges::{EdgePrecision, audit_edges};
+use crate::face::audit_face;
+use crate::findings::FaceFindings;
+use crate::precision::ROUNDING;
+use crate::report::{AuditOptions, Claim, PartAudit, Problem, Subject};
 use crate::shell::audit_shell;
-use chordal_brep::{BodyKind, FaceGeometry, Part};
+use chordal_brep::issue::MeshDefect;
+use chordal_brep::{AuditIssue, BodyKind, Part};
 use chordal_mesh::{Origin, PartMesh};
 use chordal_nurbs::Box3;
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 /// Points nearer together than this share of the tolerance, and of the part, may be one vertex.
 const SAME_POINT: f64 = 0.1;
@@ -16,47 +20,6 @@ const SAME_POINT_OF_PART: f64 = 1e-6;
 
 fn diagonal(mesh: &PartMesh) -> f64 {
     Box3::from_points(mesh.positions.iter().copied()).diagonal()
-}
-
-/// What all faces of a part share.
-pub(crate) struct Context<'a> {
-    pub part: &'a Part,
-    pub mesh: &'a PartMesh,
-    pub options: &'a AuditOptions,
-    pub claims: Option<&'a [Claim]>,
-    /// The largest coordinate of the mesh.
-    pub scale: f64,
-    /// Points nearer together may be one vertex: the end rows of a surface at a pole.
-    pub same_point: f64,
-    /// The position of each vertex of the part, where it has one.
-    pub vertex_at: Vec<Option<u32>>,
-    pub edges: Vec<EdgeAudit>,
-}
-
-impl Context<'_> {
-    /// A point may be off by this much and is charged for it; by more, and it is misplaced.
-    pub fn allowed(&self) -> f64 {
-        CHARGED * self.options.tolerance + self.options.coordinate_rounding
-    }
-
-    /// Bounds of a facet that are as good as any: a little under the tolerance, and what is claimed of the face.
-    pub fn enough(&self, face: usize) -> (f64, f64) {
-        let tolerance = self.options.tolerance;
-        let claimed = self.claim(face).map_or(tolerance, |c| c.proven_error);
-        let claimed =
-            if claimed.is_finite() { claimed.clamp(0.01 * tolerance, tolerance) } else { tolerance };
-        (AIM * tolerance, claimed)
-    }
-
-    pub fn claim(&self, face: usize) -> Option<Claim> {
-        self.claims.and_then(|claims| claims.get(face)).copied()
-    }
-
-    /// The file, or the mesher, said that this face has no triangles.
-    pub fn known_missing(&self, face: usize) -> bool {
-        matches!(self.part.faces[face].geometry, FaceGeometry::Failed(_))
-            || self.claim(face).is_some_and(|c| c.missing)
-    }
 }
 
 /// Recomputes everything that was promised of the mesh of a part. `claims`, one per face, are compared with what
@@ -68,9 +31,9 @@ pub fn audit_part(
     claims: Option<&[Claim]>,
 ) -> PartAudit {
     let mut audit = PartAudit::default();
-    if let Some(what) = malformed(part, mesh) {
-        let sentence = format!("the mesh is malformed: {what}");
-        audit.problems.push(Problem { subject: Subject::Part, kind: ProblemKind::Malformed, sentence });
+    if let Some(defect) = malformed(part, mesh) {
+        let issue = AuditIssue::MalformedMesh(defect);
+        audit.problems.push(Problem::new(Subject::Part, part.source, issue));
         return audit;
     }
     let mut context = Context {
@@ -84,7 +47,8 @@ pub fn audit_part(
         edges: Vec::new(),
     };
     check_origins(&mut context, &mut audit);
-    context.edges = audit_edges(part, mesh, context.scale, context.allowed());
+    let (scale, allowed, millimetres) = (context.scale, context.allowed(), options.millimetres);
+    context.edges = audit_edges(part, mesh, EdgePrecision { scale, allowed, millimetres });
     for edge in &context.edges {
         audit.misplaced_vertices += edge.misplaced;
         audit.problems.extend(edge.problem.clone());
@@ -100,41 +64,42 @@ pub fn audit_part(
         audit.faces.push(face.audit);
     }
     add_shells(&context, &faces, &mut audit);
-    audit.problems.sort();
-    audit.problems.dedup_by(|b, a| (a.subject, a.kind) == (b.subject, b.kind));
+    let mut seen = FxHashSet::default();
+    audit.problems.retain(|p| seen.insert((p.subject, p.issue.code())));
+    audit.problems.sort_by_key(|p| p.subject);
     audit
 }
 
-/// Why nothing else can be looked at.
-fn malformed(part: &Part, mesh: &PartMesh) -> Option<String> {
+/// Why nothing else can be checked.
+fn malformed(part: &Part, mesh: &PartMesh) -> Option<MeshDefect> {
     let n = mesh.positions.len();
     if mesh.origins.len() != n {
-        return Some(format!("{n} positions and {} origins", mesh.origins.len()));
+        return Some(MeshDefect::Origins { positions: n, origins: mesh.origins.len() });
     }
     if mesh.faces.len() != part.faces.len() {
-        return Some(format!("{} faces of {}", mesh.faces.len(), part.faces.len()));
+        return Some(MeshDefect::Faces { found: mesh.faces.len(), expected: part.faces.len() });
     }
     if mesh.edges.len() != part.edges.len() {
-        return Some(format!("{} edges of {}", mesh.edges.len(), part.edges.len()));
+        return Some(MeshDefect::Edges { found: mesh.edges.len(), expected: part.edges.len() });
     }
-    if let Some(i) = mesh.positions.iter().position(|p| !p.is_finite()) {
-        return Some(format!("position {i} is not finite"));
+    if let Some(position) = mesh.positions.iter().position(|p| !p.is_finite()) {
+        return Some(MeshDefect::NotFinite { position });
     }
     if mesh.edges.iter().flatten().any(|&p| p as usize >= n) {
-        return Some("an edge has a vertex that does not exist".into());
+        return Some(MeshDefect::EdgePosition);
     }
     mesh.faces.iter().enumerate().find_map(|(i, face)| {
         let corners = face.corners.len();
         let lost = face.corners.iter().any(|c| c.position as usize >= n || !c.uv.is_finite())
             || face.triangles.iter().flatten().any(|&c| c as usize >= corners);
-        (lost || face.face as usize != i).then(|| format!("face {i} has corners that do not exist"))
+        (lost || face.face as usize != i).then_some(MeshDefect::FaceCorner { face: i })
     })
 }
 
 /// Vertices of the part are where the model has them, and there is one of each; edge samples are in their polylines.
 fn check_origins(context: &mut Context<'_>, audit: &mut PartAudit) {
     let Context { part, mesh, .. } = *context;
-    let rounding = crate::edges::ROUNDING * context.scale + context.options.coordinate_rounding;
+    let rounding = ROUNDING * context.scale + context.options.coordinate_rounding;
     let mut vertex_at = vec![None; part.vertices.len()];
     let mut twice = 0;
     let mut lost = 0;
@@ -157,42 +122,35 @@ fn check_origins(context: &mut Context<'_>, audit: &mut PartAudit) {
     }
     context.vertex_at = vertex_at;
     let misplaced = audit.misplaced_vertices;
-    let mut add = |count: usize, kind: ProblemKind, what: &str| {
+    let mut add = |count: usize, issue: AuditIssue| {
         if count > 0 {
-            audit.problems.push(Problem {
-                subject: Subject::Part,
-                kind,
-                sentence: format!("{count} {what}"),
-            });
+            audit.problems.push(Problem::new(Subject::Part, part.source, issue));
         }
     };
-    add(misplaced, ProblemKind::MisplacedVertex, "vertices of the model are elsewhere in the mesh");
-    add(twice, ProblemKind::BrokenPolyline, "vertices of the model are in the mesh more than once");
-    add(lost, ProblemKind::Malformed, "positions come from nothing in the model");
+    add(misplaced, AuditIssue::MisplacedModelVertices { vertices: misplaced });
+    add(twice, AuditIssue::RepeatedModelVertices { vertices: twice });
+    add(lost, AuditIssue::MalformedMesh(MeshDefect::UnknownOrigins { positions: lost }));
 }
 
 /// A bound that is claimed must not be below the one recomputed; beyond rounding in the parameters found again.
 fn check_claim(context: &Context<'_>, index: usize, face: &FaceFindings, problems: &mut Vec<Problem>) {
     let Some(claim) = context.claim(index).filter(|_| face.audit.triangles > 0) else { return };
     let floor = 4.0 * face.rounding;
-    let mut add = |kind: ProblemKind, what: &str, claimed: f64, found: f64| {
-        if claimed < found * (1.0 - 1e-6) - floor {
-            let source = context.part.faces[index].source;
-            let sentence =
-                format!("face {source}: the {what} is claimed to be {claimed:.6e} and is {found:.6e}");
-            problems.push(Problem { subject: Subject::Face(index as u32), kind, sentence });
-        }
-    };
-    add(ProblemKind::UnderstatedError, "proven error", claim.proven_error, face.claimable);
-    add(ProblemKind::UnderstatedGap, "gap", claim.gap, face.surface_gap);
-    if claim.proven_error.is_finite() && face.error.is_nan() && context.options.proven {
+    let understated = |claimed: f64, found: f64| claimed < found * (1.0 - 1e-6) - floor;
+    let mut add = |issue| {
         let source = context.part.faces[index].source;
-        let sentence = format!("face {source}: an error is claimed to be proven and nothing can be");
-        problems.push(Problem {
-            subject: Subject::Face(index as u32),
-            kind: ProblemKind::Unproven,
-            sentence,
-        });
+        problems.push(Problem::new(Subject::Face(index as u32), source, issue));
+    };
+    if understated(claim.proven_error, face.claimable) {
+        let (claimed, found) = (context.mm(claim.proven_error), context.mm(face.claimable));
+        add(AuditIssue::UnderstatedError { claimed, found });
+    }
+    if understated(claim.gap, face.surface_gap) {
+        let (claimed, found) = (context.mm(claim.gap), context.mm(face.surface_gap));
+        add(AuditIssue::UnderstatedGap { claimed, found });
+    }
+    if claim.proven_error.is_finite() && face.error.is_nan() && context.options.proven {
+        add(AuditIssue::Unproven);
     }
 }
 
@@ -223,10 +181,11 @@ fn add_shells(context: &Context<'_>, faces: &[FaceFindings], audit: &mut PartAud
         audit.shells.push(shell.audit);
     }
     for (index, _) in faces.iter().enumerate().filter(|&(i, f)| f.turned_over && !vouched[i]) {
-        audit.problems.push(Problem {
-            subject: Subject::Face(index as u32),
-            kind: ProblemKind::FoldedTriangle,
-            sentence: format!("face {} is turned over as a whole", part.faces[index].source),
-        });
+        let source = part.faces[index].source;
+        audit.problems.push(Problem::new(
+            Subject::Face(index as u32),
+            source,
+            AuditIssue::FaceTurnedOver,
+        ));
     }
 }

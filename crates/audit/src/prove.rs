@@ -1,16 +1,15 @@
 //! The bounds of one face, recomputed: its triangles, its chords, and what lies between the two sides of cuts.
 
 use crate::boundary::Boundary;
+use crate::context::Context;
 use crate::cuts::{self, Cut};
-use crate::face::{CHUNK, Chart, FaceFindings, Log};
+use crate::chart::Chart;
 use crate::fan::{Fan, Side, fan_bound};
-use crate::part::Context;
-use crate::report::ProblemKind;
+use crate::findings::{FaceFindings, Log};
+use crate::precision::{AIM, CHUNK};
+use chordal_brep::AuditIssue;
 use chordal_nurbs::{Facet, Piece, Surface, SurfaceBounds, facet_bound};
 use rayon::prelude::*;
-
-/// Bounds are asked to be tight for errors of this share of the tolerance.
-pub(crate) const AIM: f64 = 0.995;
 
 pub(crate) fn prove(
     context: &Context<'_>,
@@ -39,12 +38,14 @@ pub(crate) fn prove(
     let total = found.error + context.options.coordinate_rounding;
     let tolerance = context.options.tolerance;
     if total > tolerance * (1.0 + 1e-9) + chart.rounding {
-        let what = format!(
-            "is off by up to {total:.6e}, over the tolerance of {tolerance:.6e} \
-             (triangles {:.3e}, at poles {:.3e}, chords {chords:.3e}, slivers {slivers:.3e})",
-            facets.plain, facets.error
-        );
-        log.add(ProblemKind::OverTolerance, what);
+        log.add(AuditIssue::OverTolerance {
+            error: context.mm(total),
+            tolerance: context.mm(tolerance),
+            triangles: context.mm(facets.plain),
+            at_poles: context.mm(facets.error),
+            chords: context.mm(chords),
+            slivers: context.mm(slivers),
+        });
     }
 }
 

@@ -1,5 +1,6 @@
-//! What is asked of an audit, and what it found.
+//! The options of an audit and its results.
 
+use chordal_brep::{AuditIssue, Issue, Severity, Source};
 use std::fmt;
 
 /// What the mesh has to keep, in the part's own units.
@@ -14,12 +15,14 @@ pub struct AuditOptions {
     pub proven: bool,
     /// How far writing the coordinates in a shorter format may move a vertex; it is charged to every bound.
     pub coordinate_rounding: f64,
+    /// Millimetres in one unit of the part; issues state lengths in millimetres.
+    pub millimetres: f64,
 }
 
 impl AuditOptions {
     /// A proven tolerance, no limit of the angle, coordinates as they are.
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, angle: None, proven: true, coordinate_rounding: 0.0 }
+        Self { tolerance, angle: None, proven: true, coordinate_rounding: 0.0, millimetres: 1.0 }
     }
     pub fn with_angle(mut self, radians: Option<f64>) -> Self {
         self.angle = radians;
@@ -31,6 +34,11 @@ impl AuditOptions {
     }
     pub fn with_coordinate_rounding(mut self, length: f64) -> Self {
         self.coordinate_rounding = length;
+        self
+    }
+    /// Sets the size of the part's unit in millimetres, for the lengths in issues.
+    pub fn with_millimetres(mut self, millimetres: f64) -> Self {
+        self.millimetres = millimetres;
         self
     }
 }
@@ -56,55 +64,32 @@ pub enum Subject {
     Edge(u32),
 }
 
-/// What is wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ProblemKind {
-    /// Indices or numbers of the mesh make no sense.
-    Malformed,
-    /// A face has no triangles and nothing was said of it.
-    MissingFace,
-    /// A chord of an edge is no boundary of a face that the edge bounds: a skipped sample, a filled hole.
-    MissingChord,
-    /// Triangles end where the face has no edge: a missing triangle, a T-vertex.
-    StrayBoundary,
-    /// A closed shell's mesh is open.
-    OpenShell,
-    /// Two triangles run along an edge in the same direction.
-    InconsistentEdges,
-    /// More triangles meet at an edge than the model has faces there.
-    NonManifoldEdges,
-    /// The volume has the wrong sign.
-    InsideOut,
-    DegenerateTriangle,
-    DuplicateTriangle,
-    /// A triangle is turned over in the parameters of its face.
-    FoldedTriangle,
-    /// A vertex is not where its origin says.
-    MisplacedVertex,
-    /// The samples of an edge are not those of its curve, in order.
-    BrokenPolyline,
-    /// A corner's normal is not the surface's.
-    WrongNormal,
-    OverTolerance,
-    OverAngle,
-    /// Nothing can be proven about a face although its error was said to be proven.
-    Unproven,
-    /// The recomputed error is larger than the one that was claimed.
-    UnderstatedError,
-    UnderstatedGap,
+/// Something wrong with the mesh of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// What it was found in.
+    pub subject: Subject,
+    /// What was found.
+    pub issue: AuditIssue,
+    /// The entity of the file.
+    pub source: Source,
 }
 
-/// Something wrong, in one sentence.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Problem {
-    pub subject: Subject,
-    pub kind: ProblemKind,
-    pub sentence: String,
+impl Problem {
+    /// A finding about `subject`, which is the entity `source` of the file.
+    pub fn new(subject: Subject, source: Source, issue: AuditIssue) -> Self {
+        Self { subject, issue, source }
+    }
+
+    /// As the diagnostic that all stages share.
+    pub fn into_issue(self) -> Issue {
+        Issue::new(Severity::Error, self.source, self.issue)
+    }
 }
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.sentence)
+        self.clone().into_issue().fmt(f)
     }
 }
 

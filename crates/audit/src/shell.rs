@@ -1,9 +1,10 @@
 //! A shell: closed and oriented by the identity of vertices, so that parts that touch do not mix.
 
-use crate::face::FaceFindings;
-use crate::part::Context;
-use crate::report::{Problem, ProblemKind, ShellAudit, Subject};
-use chordal_brep::Loop;
+use crate::context::Context;
+use crate::findings::FaceFindings;
+use crate::halves::half_key;
+use crate::report::{Problem, ShellAudit, Subject};
+use chordal_brep::{AuditIssue, Loop};
 use rustc_hash::FxHashMap;
 
 /// What was found out about one shell.
@@ -13,12 +14,6 @@ pub(crate) struct ShellFindings {
     /// Between different faces.
     pub duplicates: usize,
     pub problems: Vec<Problem>,
-}
-
-/// A half-edge between positions as a sortable key: both ends, then the direction.
-pub(crate) fn half_key(from: u32, to: u32) -> (u64, bool) {
-    let (low, high) = (from.min(to), from.max(to));
-    (u64::from(low) << 32 | u64::from(high), from > to)
 }
 
 /// Audits a shell whose volume should have the sign `sign` (zero: unknown).
@@ -108,42 +103,25 @@ fn shared_duplicates<'a>(faces: impl Iterator<Item = &'a FaceFindings>) -> usize
     triples.windows(2).filter(|w| w[0] == w[1]).count()
 }
 
-fn in_file(count: usize) -> String {
-    if count == 0 { String::new() } else { format!(", {count} of them in the file") }
-}
-
 fn describe(context: &Context<'_>, sign: i8, found: &mut ShellFindings) {
     let audit = found.audit;
     let source = context.part.shells[audit.shell as usize].source;
-    let mut add = |kind: ProblemKind, what: String| {
-        let sentence = format!("shell {source} {what}");
-        found.problems.push(Problem { subject: Subject::Shell(audit.shell), kind, sentence });
-    };
+    let mut add = |issue| found.problems.push(Problem::new(Subject::Shell(audit.shell), source, issue));
     if audit.closed_in_file && audit.complete && audit.open_edges > 0 {
-        let in_file = in_file(audit.open_in_file);
-        add(
-            ProblemKind::OpenShell,
-            format!("is said to be closed and has {} open edges{in_file}", audit.open_edges),
-        );
+        add(AuditIssue::OpenShell { open_edges: audit.open_edges, in_file: audit.open_in_file });
     }
-    // An open shell may well be put together from faces that do not agree.
+    // The faces of an open shell need not agree on an orientation in the file.
     if audit.inconsistent_edges > if audit.closed_in_file { 0 } else { audit.inconsistent_in_file } {
-        let in_file = in_file(audit.inconsistent_in_file);
-        add(
-            ProblemKind::InconsistentEdges,
-            format!("has {} inconsistent edges{in_file}", audit.inconsistent_edges),
-        );
+        let (edges, in_file) = (audit.inconsistent_edges, audit.inconsistent_in_file);
+        add(AuditIssue::InconsistentEdges { edges, in_file });
     }
     if audit.non_manifold_edges > 0 {
-        add(
-            ProblemKind::NonManifoldEdges,
-            format!("has {} edges with more triangles than the model has faces", audit.non_manifold_edges),
-        );
+        add(AuditIssue::NonManifoldEdges { edges: audit.non_manifold_edges });
     }
     if found.duplicates > 0 {
-        add(ProblemKind::DuplicateTriangle, format!("has {} triangles more than once", found.duplicates));
+        add(AuditIssue::DuplicateTriangles { triangles: found.duplicates });
     }
     if audit.is_sound() && sign != 0 && audit.volume * f64::from(sign) < 0.0 {
-        add(ProblemKind::InsideOut, format!("is inside out: its volume is {:.6e}", audit.volume));
+        add(AuditIssue::InsideOut { volume: audit.volume * context.options.millimetres.powi(3) });
     }
 }

@@ -4,29 +4,30 @@
 
 mod common;
 
-use chordal_audit::{Problem, ProblemKind, Subject};
+use chordal_audit::{Problem, Subject};
+use chordal_brep::AuditIssue;
 use chordal_tessellate::PartReport;
 use std::fmt::Write;
 
 /// Faults of the mesher that are known and not yet mended: model, what the audit finds, and why.
-const KNOWN: &[(&str, &[ProblemKind], &str)] = &[
+const KNOWN: &[(&str, &[&str], &str)] = &[
     (
         "nested_loops",
-        &[ProblemKind::FoldedTriangle, ProblemKind::NonManifoldEdges, ProblemKind::InconsistentEdges],
+        &["inverted-triangles", "non-manifold-edges", "inconsistent-edges"],
         "two outer loops in one face: the second lies inside a hole of the first",
     ),
     (
         "weight_range",
-        &[ProblemKind::DegenerateTriangle, ProblemKind::OverTolerance],
+        &["degenerate-triangles", "over-tolerance"],
         "weights from 1e-3 to 1e3: not meshed in time, or with triangles as thin as rounding",
     ),
-    ("degree_mixed", &[ProblemKind::DegenerateTriangle], "three points of one straight parameter line"),
+    ("degree_mixed", &["degenerate-triangles"], "three points of one straight parameter line"),
 ];
 
 /// The mesher itself says that a face did not keep the tolerance; this test is about what it does not say.
 fn is_owned_up(problem: &Problem, report: &PartReport, tolerance: f64) -> bool {
-    match (problem.kind, problem.subject) {
-        (ProblemKind::OverTolerance, Subject::Face(f)) => {
+    match (&problem.issue, problem.subject) {
+        (AuditIssue::OverTolerance { .. }, Subject::Face(f)) => {
             // Not even an infinite error, which is reported as none.
             let claimed = report.faces[f as usize].proven_error;
             claimed.is_nan() || claimed > tolerance
@@ -55,12 +56,12 @@ fn every_model_audits_clean() {
                     println!("{name} part {index} at {share}: face {} failed: {:?}", face.face, face.failed);
                 }
                 for problem in &audit.problems {
-                    let line = format!("{name} part {index} at {share}: {:?}: {problem}", problem.kind);
+                    let line = format!("{name} part {index} at {share}: {}: {problem}", problem.issue.code());
                     if is_owned_up(problem, &report, tolerance) {
                         println!("owned up: {line}");
                         continue;
                     }
-                    match KNOWN.iter().find(|known| known.0 == name && known.1.contains(&problem.kind)) {
+                    match KNOWN.iter().find(|known| known.0 == name && known.1.contains(&problem.issue.code())) {
                         Some(known) => println!("known ({}): {line}", known.2),
                         None => writeln!(faults, "{line}").unwrap(),
                     }

@@ -4,7 +4,7 @@
 
 mod common;
 
-use chordal_audit::{AuditOptions, Claim, PartAudit, ProblemKind, ProblemKind::*, audit_part};
+use chordal_audit::{AuditOptions, Claim, PartAudit, audit_part};
 use chordal_brep::{FaceGeometry, Part};
 use chordal_mesh::{Corner, Origin, PartMesh};
 use chordal_nurbs::{DVec2, DVec3, Surface};
@@ -56,12 +56,12 @@ impl Sample {
         }
     }
 
-    /// Puts the fault in and expects one of `kinds`.
-    fn expect(&self, what: &str, kinds: &[ProblemKind], fault: impl Fn(&mut PartMesh)) {
+    /// Puts the fault in and expects one of `codes`.
+    fn expect(&self, what: &str, codes: &[&str], fault: impl Fn(&mut PartMesh)) {
         let mut mesh = self.mesh.clone();
         fault(&mut mesh);
         let audit = self.audit(&mesh);
-        let found = audit.problems.iter().any(|p| kinds.contains(&p.kind));
+        let found = audit.problems.iter().any(|p| codes.contains(&p.issue.code()));
         assert!(found, "{}: {what} is not found, only {:?}", self.name, audit.problems);
     }
 
@@ -84,14 +84,14 @@ fn a_removed_triangle_is_found() {
         for f in sample.faces() {
             let n = sample.mesh.faces[f].triangles.len();
             for t in [0, n / 2, n - 1] {
-                let kinds: &[ProblemKind] =
-                    if n == 1 { &[MissingFace] } else { &[StrayBoundary, MissingChord] };
+                let codes: &[&str] =
+                    if n == 1 { &["missing-face"] } else { &["stray-boundary", "missing-chords"] };
                 let remove = |mesh: &mut PartMesh| {
                     mesh.faces[f].triangles.remove(t);
                 };
-                sample.expect("a removed triangle", kinds, remove);
+                sample.expect("a removed triangle", codes, remove);
                 if n > 1 && sample.part.shells[0].closed {
-                    sample.expect("the hole", &[OpenShell], remove);
+                    sample.expect("the hole", &["open-shell"], remove);
                 }
             }
         }
@@ -104,8 +104,8 @@ fn a_flipped_triangle_is_found() {
         for f in sample.faces().filter(|&f| sample.mesh.faces[f].triangles.len() > 2) {
             let t = sample.mesh.faces[f].triangles.len() / 2;
             let flip = |mesh: &mut PartMesh| mesh.faces[f].triangles[t].swap(0, 1);
-            sample.expect("a flipped triangle", &[FoldedTriangle], flip);
-            sample.expect("its edges", &[InconsistentEdges], flip);
+            sample.expect("a flipped triangle", &["inverted-triangles"], flip);
+            sample.expect("its edges", &["inconsistent-edges"], flip);
         }
     }
 }
@@ -115,11 +115,11 @@ fn a_doubled_triangle_is_found() {
     for sample in Sample::all() {
         for f in sample.faces() {
             let t = sample.mesh.faces[f].triangles.len() / 2;
-            sample.expect("a doubled triangle", &[DuplicateTriangle], |mesh| {
+            sample.expect("a doubled triangle", &["duplicate-triangles"], |mesh| {
                 let copy = mesh.faces[f].triangles[t];
                 mesh.faces[f].triangles.push(copy);
             });
-            sample.expect("a triangle on its own back", &[DuplicateTriangle, FoldedTriangle], |mesh| {
+            sample.expect("a triangle on its own back", &["duplicate-triangles", "inverted-triangles"], |mesh| {
                 let [a, b, c] = mesh.faces[f].triangles[t];
                 mesh.faces[f].triangles.push([b, a, c]);
             });
@@ -136,7 +136,7 @@ fn a_moved_vertex_inside_a_face_is_found() {
                 let normal = sample.mesh.faces[f].corners[c as usize].normal;
                 for direction in [normal, -normal, normal.any_orthonormal_vector()] {
                     tried += 1;
-                    sample.expect("a moved vertex", &[MisplacedVertex], |mesh| {
+                    sample.expect("a moved vertex", &["misplaced-vertices"], |mesh| {
                         let p = Sample::position(mesh, f, c);
                         mesh.positions[p] += direction * 2.0 * sample.tolerance;
                     });
@@ -157,19 +157,19 @@ fn a_moved_vertex_on_an_edge_is_found() {
             let p = sample.mesh.positions[line[i] as usize];
             let tangent = curve.jet(curve.invert(p, None)).d1.normalize();
             let across = tangent.any_orthonormal_vector();
-            let mut moved = |direction: DVec3, kinds: &[ProblemKind]| {
+            let mut moved = |direction: DVec3, codes: &[&str]| {
                 tried += 1;
-                sample.expect("a moved vertex on an edge", kinds, |mesh| {
+                sample.expect("a moved vertex on an edge", codes, |mesh| {
                     mesh.positions[line[i] as usize] += direction * 2.0 * sample.tolerance;
                 });
             };
-            moved(across, &[MisplacedVertex]);
-            moved(tangent.cross(across), &[MisplacedVertex]);
+            moved(across, &["misplaced-vertices"]);
+            moved(tangent.cross(across), &["misplaced-vertices"]);
             // Along its curve it stays on the curve; but not where the faces' parameters say.
-            moved(tangent, &[MisplacedVertex, UnderstatedGap]);
+            moved(tangent, &["misplaced-vertices", "understated-gap"]);
         }
         let p = sample.mesh.origins.iter().position(|o| matches!(o, Origin::Vertex(_))).unwrap();
-        sample.expect("a moved corner", &[MisplacedVertex], |mesh| {
+        sample.expect("a moved corner", &["misplaced-vertices"], |mesh| {
             mesh.positions[p] += DVec3::X * 2.0 * sample.tolerance;
         });
     }
@@ -203,8 +203,8 @@ fn a_t_vertex_is_found() {
                 face.triangles[t] = [a, m, c];
                 face.triangles.push([m, b, c]);
             };
-            sample.expect("a T-vertex", &[StrayBoundary], split);
-            sample.expect("the chord it broke", &[MissingChord], split);
+            sample.expect("a T-vertex", &["stray-boundary"], split);
+            sample.expect("the chord it broke", &["missing-chords"], split);
         }
     }
 }
@@ -213,7 +213,7 @@ fn a_t_vertex_is_found() {
 fn a_missing_face_is_found() {
     for sample in Sample::all() {
         for f in sample.faces() {
-            sample.expect("a missing face", &[MissingFace], |mesh| mesh.faces[f].triangles.clear());
+            sample.expect("a missing face", &["missing-face"], |mesh| mesh.faces[f].triangles.clear());
         }
     }
 }
@@ -229,7 +229,7 @@ fn an_understated_bound_is_found() {
             }
             tried += 1;
             sample.claims[f].proven_error = 0.5 * honest.proven_error;
-            sample.expect("an understated bound", &[UnderstatedError], |_| ());
+            sample.expect("an understated bound", &["understated-error"], |_| ());
             sample.claims[f] = honest;
         }
     }
@@ -239,7 +239,7 @@ fn an_understated_bound_is_found() {
         (0..sample.claims.len()).min_by(|&a, &b| sample.claims[a].gap.total_cmp(&sample.claims[b].gap));
     let f = tightest.unwrap();
     sample.mesh.faces[f].corners.iter_mut().for_each(|c| c.uv += DVec2::new(0.0, 5e-4 * sample.tolerance));
-    sample.expect("an understated gap", &[UnderstatedGap], |_| ());
+    sample.expect("an understated gap", &["understated-gap"], |_| ());
 }
 
 #[test]
@@ -248,7 +248,7 @@ fn too_coarse_a_mesh_is_found() {
         let tight = AuditOptions::new(0.5 * sample.tolerance);
         let audit = audit_part(&sample.part, &sample.mesh, &tight, Some(&sample.claims));
         assert!(
-            audit.problems.iter().any(|p| p.kind == OverTolerance),
+            audit.problems.iter().any(|p| p.issue.code() == "over-tolerance"),
             "{}: {:?}",
             sample.name,
             audit.problems
@@ -256,14 +256,14 @@ fn too_coarse_a_mesh_is_found() {
         let rounded = AuditOptions::new(sample.tolerance).with_coordinate_rounding(0.5 * sample.tolerance);
         let audit = audit_part(&sample.part, &sample.mesh, &rounded, Some(&sample.claims));
         assert!(
-            audit.problems.iter().any(|p| p.kind == OverTolerance),
+            audit.problems.iter().any(|p| p.issue.code() == "over-tolerance"),
             "{}: {:?}",
             sample.name,
             audit.problems
         );
         let angle = AuditOptions::new(sample.tolerance).with_angle(Some(0.01));
         let audit = audit_part(&sample.part, &sample.mesh, &angle, None);
-        assert!(audit.problems.iter().any(|p| p.kind == OverAngle), "{}: {:?}", sample.name, audit.problems);
+        assert!(audit.problems.iter().any(|p| p.issue.code() == "over-angle"), "{}: {:?}", sample.name, audit.problems);
     }
 }
 
@@ -287,7 +287,7 @@ fn a_filled_hole_is_found() {
                 continue;
             };
             tried += 1;
-            sample.expect("a filled hole", &[MissingChord, StrayBoundary], |mesh| {
+            sample.expect("a filled hole", &["missing-chords", "stray-boundary"], |mesh| {
                 for k in 1..rim.len() - 1 {
                     // Whichever way round fits the triangles around the hole.
                     let fan = [rim[0] as u32, rim[k] as u32, rim[k + 1] as u32];
@@ -307,23 +307,23 @@ fn a_filled_hole_is_found() {
 fn other_faults_are_found() {
     for sample in Sample::all() {
         let long = sample.mesh.edges.iter().position(|line| line.len() > 2).unwrap();
-        sample.expect("a skipped sample", &[BrokenPolyline], |mesh| {
+        sample.expect("a skipped sample", &["broken-polyline"], |mesh| {
             mesh.edges[long].remove(1);
         });
         for f in sample.faces() {
-            sample.expect("a wrong normal", &[WrongNormal], |mesh| {
+            sample.expect("a wrong normal", &["wrong-normals"], |mesh| {
                 let normal = &mut mesh.faces[f].corners[0].normal;
                 *normal = -*normal;
             });
-            sample.expect("a triangle without area", &[DegenerateTriangle], |mesh| {
+            sample.expect("a triangle without area", &["degenerate-triangles"], |mesh| {
                 let [a, b, _] = mesh.faces[f].triangles[0];
                 mesh.faces[f].triangles.push([a, b, a]);
             });
-            sample.expect("a corner that does not exist", &[Malformed], |mesh| {
+            sample.expect("a corner that does not exist", &["malformed-mesh"], |mesh| {
                 mesh.faces[f].triangles[0][1] = u32::MAX;
             });
         }
-        sample.expect("a crack", &[BrokenPolyline, Malformed], |mesh| {
+        sample.expect("a crack", &["broken-polyline", "malformed-mesh"], |mesh| {
             // One face gets a vertex of its own where it should share the model's.
             let c = mesh.faces[0]
                 .corners
@@ -336,7 +336,7 @@ fn other_faults_are_found() {
             mesh.origins.push(mesh.origins[p]);
         });
         if sample.part.shells[0].closed {
-            sample.expect("a mesh inside out", &[InsideOut], |mesh| {
+            sample.expect("a mesh inside out", &["inside-out"], |mesh| {
                 mesh.faces.iter_mut().flat_map(|f| &mut f.triangles).for_each(|t| t.swap(0, 1));
             });
         }

@@ -61,7 +61,7 @@ fn real_models_are_audited() {
                 if std::env::var_os("CHORDAL_ONLY").is_some() {
                     println!("    {problem}");
                 }
-                let entry = kinds.entry(problem.kind).or_insert((0, problem.sentence));
+                let entry = kinds.entry(problem.issue.code()).or_insert((0, problem.to_string()));
                 entry.0 += 1;
             }
         }
@@ -70,7 +70,7 @@ fn real_models_are_audited() {
             100.0 * auditing / meshing
         );
         for (kind, (count, sentence)) in kinds {
-            println!("    {count} × {kind:?}, as: {sentence}");
+            println!("    {count} × {kind}, as: {sentence}");
         }
     }
 }

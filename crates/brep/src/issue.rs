@@ -12,7 +12,7 @@ mod meshing;
 mod reading;
 pub mod words;
 
-pub use auditing::AuditIssue;
+pub use auditing::{AuditIssue, MeshDefect, PolylineDefect};
 pub use meshing::MeshIssue;
 pub use reading::ReadIssue;
 

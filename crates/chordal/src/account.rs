@@ -190,7 +190,7 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
         inconsistent_edges: audited.shells.iter().map(|s| s.inconsistent_edges).sum(),
         degenerate_triangles: audited.degenerate_triangles,
         duplicate_triangles: audited.duplicate_triangles,
-        problems: audited.problems.clone(),
+        problems: audited.problems.iter().map(ToString::to_string).collect(),
     });
     report.passed_through.extend(part.tessellated.iter().map(|item| PassedThroughEntry {
         id: entity_id(item.source),

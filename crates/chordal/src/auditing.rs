@@ -2,8 +2,8 @@
 
 use crate::job::MeshedPart;
 use crate::resolve::Resolved;
-use chordal_audit::{AuditOptions, Claim, Problem, ProblemKind, Subject, audit_part};
-use chordal_brep::{Model, Part};
+use chordal_audit::{AuditOptions, Claim, Problem, Subject, audit_part};
+use chordal_brep::{AuditIssue, Issue, Model, Part};
 use chordal_tessellate::{Bound, FaceReport, Options};
 use rayon::prelude::*;
 
@@ -13,8 +13,8 @@ pub(crate) struct AuditedPart {
     pub shells: Vec<AuditedShell>,
     pub degenerate_triangles: usize,
     pub duplicate_triangles: usize,
-    /// One sentence each.
-    pub problems: Vec<String>,
+    /// What is wrong with it.
+    pub problems: Vec<Issue>,
 }
 
 /// One shell.
@@ -37,17 +37,18 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &mut [Meshe
         .zip(resolved.uses.par_iter().zip(&resolved.parts))
         .map(
             |((part, meshed), (part_use, options))| {
-                if part_use.instances == 0 { AuditedPart::default() } else { audit(part, meshed, options) }
+                if part_use.instances == 0 { AuditedPart::default() } else { audit(part, meshed, options, part_use.scale) }
             },
         )
         .collect()
 }
 
-fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options) -> AuditedPart {
+fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options, scale: f64) -> AuditedPart {
     let claims: Vec<Claim> = meshed.report.faces.iter().map(claim).collect();
     let asked = AuditOptions::new(options.largest_tolerance())
         .with_angle(options.angle)
-        .with_proven(options.bound == Bound::Proven);
+        .with_proven(options.bound == Bound::Proven)
+        .with_millimetres(scale);
     let audit = audit_part(part, &meshed.mesh, &asked, Some(&claims));
     for (of_face, audited) in meshed.report.faces.iter_mut().zip(&audit.faces) {
         // Not where nothing is proven: that stays so.
@@ -68,9 +69,9 @@ fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options) -> AuditedPart
         duplicate_triangles: audit.duplicate_triangles,
         problems: audit
             .problems
-            .iter()
-            .filter(|p| !is_told(p, &claims, options))
-            .map(ToString::to_string)
+            .into_iter()
+            .filter(|p| !is_reported(p, &claims, options))
+            .map(Problem::into_issue)
             .collect(),
     }
 }
@@ -89,15 +90,15 @@ fn is_missing(meshed: &MeshedPart, face: usize) -> bool {
     !zero_area && meshed.mesh.faces.get(face).is_none_or(|m| m.triangles.is_empty())
 }
 
-/// The report says it already: shells that are not watertight are counted, and errors over the tolerance that the
-/// mesher owns up to.
-fn is_told(problem: &Problem, claims: &[Claim], options: &Options) -> bool {
-    let owned_up = |f: u32| {
+/// The report states it elsewhere: it counts shells that are not watertight, and the mesher itself reports errors
+/// over the tolerance.
+fn is_reported(problem: &Problem, claims: &[Claim], options: &Options) -> bool {
+    let reported = |f: u32| {
         claims.get(f as usize).is_some_and(|c| !(c.proven_error <= options.largest_tolerance()) || c.missing)
     };
-    match (problem.kind, problem.subject) {
-        (ProblemKind::OpenShell | ProblemKind::InconsistentEdges, _) => true,
-        (ProblemKind::OverTolerance, Subject::Face(f)) => owned_up(f),
+    match (&problem.issue, problem.subject) {
+        (AuditIssue::OpenShell { .. } | AuditIssue::InconsistentEdges { .. }, _) => true,
+        (AuditIssue::OverTolerance { .. }, Subject::Face(f)) => reported(f),
         _ => false,
     }
 }

@@ -110,7 +110,7 @@ fn tessellated(model: &Model, path: &Path, outcome: &mut Outcome) -> usize {
         let audit =
             audit_part(part, &of_part.mesh, &AuditOptions::new(asked.tolerance).with_proven(false), None);
         outcome.watertight += audit.shells.iter().filter(|s| s.is_sound() && s.volume > 0.0).count();
-        let told = |p: &&chordal_audit::Problem| p.kind != chordal_audit::ProblemKind::MissingFace;
+        let told = |p: &&chordal_audit::Problem| p.issue != chordal_brep::AuditIssue::MissingFace;
         outcome.problems.extend(audit.problems.iter().filter(told).map(ToString::to_string));
     }
     failed

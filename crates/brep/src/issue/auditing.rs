@@ -1,20 +1,235 @@
 //! What can be found by the audit of a finished mesh.
+//!
+//! The source of the [`crate::Issue`] is the part, shell, face or edge that the finding is about, so the sentences
+//! here do not repeat it.
 
+use super::words::{count, length_mm, number};
+use crate::Source;
 use std::fmt;
 
-/// Found by the audit of a finished mesh.
+/// Found by the audit of a finished mesh. Lengths are millimetres, angles are radians.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AuditIssue {
-    /// A sentence without a variant of its own yet. The variant goes when every stage is typed.
-    Other(String),
+    /// The arrays of the mesh contradict each other or the model; nothing else can be checked.
+    MalformedMesh(MeshDefect),
+    /// A face has no triangles although neither the file nor the mesher reported it as failed or without area.
+    MissingFace,
+    /// No triangle of the face runs along these chords of its edges: a skipped sample, a filled hole.
+    MissingChords {
+        /// Number of chords.
+        chords: usize,
+        /// An edge with a missing chord.
+        edge: Option<Source>,
+    },
+    /// The triangles of the face end where the face has no edge: a missing triangle, a T-vertex.
+    StrayBoundary {
+        /// Sides of triangles.
+        sides: usize,
+    },
+    /// The mesh of a closed shell is open.
+    OpenShell {
+        /// Mesh edges with one triangle.
+        open_edges: usize,
+        /// How many of them only one face of the file uses.
+        in_file: usize,
+    },
+    /// Two triangles run along a mesh edge in the same direction.
+    InconsistentEdges {
+        /// Mesh edges.
+        edges: usize,
+        /// How many of them the loops of the file already run along in one direction.
+        in_file: usize,
+    },
+    /// More triangles meet at a mesh edge than the model has faces there.
+    NonManifoldEdges {
+        /// Mesh edges.
+        edges: usize,
+    },
+    /// The enclosed volume has the wrong sign.
+    InsideOut {
+        /// Signed volume in cubic millimetres.
+        volume: f64,
+    },
+    /// Triangles whose height is only rounding.
+    DegenerateTriangles {
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// Triangles over the same three vertices as an earlier one.
+    DuplicateTriangles {
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// Triangles that run the wrong way round in the parameter space of their face.
+    InvertedTriangles {
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// All triangles of the face run against its normal, and its loops do not explain it.
+    FaceTurnedOver,
+    /// Vertices of the mesh that are not where their parameters on the surface place them.
+    MisplacedVertices {
+        /// Number of vertices.
+        vertices: usize,
+        /// Largest distance.
+        distance: f64,
+    },
+    /// Vertices of the model that are elsewhere in the mesh.
+    MisplacedModelVertices {
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// Vertices of the model that are in the mesh more than once.
+    RepeatedModelVertices {
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A vertex of an edge's polyline that is not on the edge's curve.
+    MisplacedEdgeSample {
+        /// Distance from the curve.
+        distance: f64,
+    },
+    /// The polyline of an edge is not made of the samples of its curve, in order.
+    BrokenPolyline(PolylineDefect),
+    /// Corners whose normal is not the normal of the surface.
+    WrongNormals {
+        /// Number of corners.
+        corners: usize,
+    },
+    /// The recomputed error is over the tolerance.
+    OverTolerance {
+        /// The bound of the whole face.
+        error: f64,
+        /// The tolerance.
+        tolerance: f64,
+        /// The largest bound of a triangle.
+        triangles: f64,
+        /// The same, triangles at poles included.
+        at_poles: f64,
+        /// The largest distance of a chord from its edge.
+        chords: f64,
+        /// The largest bound between the two sides of a cut.
+        slivers: f64,
+    },
+    /// The surface normals at the two ends of a mesh edge differ by more than the limit.
+    OverAngle {
+        /// The largest angle.
+        angle: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// The error was reported as proven and no bound can be recomputed.
+    Unproven,
+    /// The recomputed error is larger than the reported one.
+    UnderstatedError {
+        /// As reported.
+        claimed: f64,
+        /// As recomputed.
+        found: f64,
+    },
+    /// The recomputed gap between vertices and surface is larger than the reported one.
+    UnderstatedGap {
+        /// As reported.
+        claimed: f64,
+        /// As recomputed.
+        found: f64,
+    },
+}
+
+/// How a mesh contradicts itself or its model.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MeshDefect {
+    /// The number of origins is not that of positions.
+    Origins {
+        /// Number of positions.
+        positions: usize,
+        /// Number of origins.
+        origins: usize,
+    },
+    /// The mesh has another number of faces than the model.
+    Faces {
+        /// In the mesh.
+        found: usize,
+        /// In the model.
+        expected: usize,
+    },
+    /// The mesh has another number of edges than the model.
+    Edges {
+        /// In the mesh.
+        found: usize,
+        /// In the model.
+        expected: usize,
+    },
+    /// A coordinate is infinite or not a number.
+    NotFinite {
+        /// Index of the position.
+        position: usize,
+    },
+    /// The polyline of an edge refers to a position that does not exist.
+    EdgePosition,
+    /// A face refers to corners or positions that do not exist.
+    FaceCorner {
+        /// Index of the face.
+        face: usize,
+    },
+    /// Positions whose origin is not in the model.
+    UnknownOrigins {
+        /// Number of positions.
+        positions: usize,
+    },
+    /// A face without a surface has triangles.
+    NoSurface,
+}
+
+/// How the polyline of an edge is broken.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PolylineDefect {
+    /// It has a single point.
+    OnePoint,
+    /// The edge has no curve and has a polyline.
+    NoCurve,
+    /// A point of it is not the sample that belongs there.
+    ForeignSample {
+        /// Place in the polyline.
+        place: usize,
+    },
+    /// A sample lies before its predecessor on the curve.
+    Unordered {
+        /// Index of the chord.
+        chord: usize,
+    },
 }
 
 impl AuditIssue {
     /// A stable name for programs to match.
     pub fn code(&self) -> &'static str {
         match self {
-            AuditIssue::Other(_) => "other",
+            AuditIssue::MalformedMesh(_) => "malformed-mesh",
+            AuditIssue::MissingFace => "missing-face",
+            AuditIssue::MissingChords { .. } => "missing-chords",
+            AuditIssue::StrayBoundary { .. } => "stray-boundary",
+            AuditIssue::OpenShell { .. } => "open-shell",
+            AuditIssue::InconsistentEdges { .. } => "inconsistent-edges",
+            AuditIssue::NonManifoldEdges { .. } => "non-manifold-edges",
+            AuditIssue::InsideOut { .. } => "inside-out",
+            AuditIssue::DegenerateTriangles { .. } => "degenerate-triangles",
+            AuditIssue::DuplicateTriangles { .. } => "duplicate-triangles",
+            AuditIssue::InvertedTriangles { .. } => "inverted-triangles",
+            AuditIssue::FaceTurnedOver => "face-turned-over",
+            AuditIssue::MisplacedVertices { .. } => "misplaced-vertices",
+            AuditIssue::MisplacedModelVertices { .. } => "misplaced-model-vertices",
+            AuditIssue::RepeatedModelVertices { .. } => "repeated-model-vertices",
+            AuditIssue::MisplacedEdgeSample { .. } => "misplaced-edge-sample",
+            AuditIssue::BrokenPolyline(_) => "broken-polyline",
+            AuditIssue::WrongNormals { .. } => "wrong-normals",
+            AuditIssue::OverTolerance { .. } => "over-tolerance",
+            AuditIssue::OverAngle { .. } => "over-angle",
+            AuditIssue::Unproven => "unproven",
+            AuditIssue::UnderstatedError { .. } => "understated-error",
+            AuditIssue::UnderstatedGap { .. } => "understated-gap",
         }
     }
 }
@@ -22,7 +237,158 @@ impl AuditIssue {
 impl fmt::Display for AuditIssue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            AuditIssue::Other(sentence) => f.write_str(sentence),
+            AuditIssue::MalformedMesh(defect) => write!(f, "the mesh is malformed: {defect}"),
+            AuditIssue::MissingFace => f.write_str("the face has no triangles"),
+            AuditIssue::MissingChords { chords, edge } => {
+                let chords = count(*chords, "chord of its edges is", "chords of its edges are");
+                write!(f, "{chords} not on the boundary of the face's mesh")?;
+                edge.map_or(Ok(()), |edge| write!(f, ", the first on edge {edge}"))
+            }
+            AuditIssue::StrayBoundary { sides } => {
+                let sides = count(*sides, "triangle side", "triangle sides");
+                write!(f, "the mesh of the face ends at {sides} where the face has no edge")
+            }
+            AuditIssue::OpenShell { open_edges, in_file } => {
+                let edges = count(*open_edges, "open edge", "open edges");
+                write!(f, "the shell is closed in the file and its mesh has {edges}{}", InFile(*in_file))
+            }
+            AuditIssue::InconsistentEdges { edges, in_file } => {
+                let edges = count(*edges, "edge", "edges");
+                write!(f, "the shell has {edges} with inconsistent orientation{}", InFile(*in_file))
+            }
+            AuditIssue::NonManifoldEdges { edges } => {
+                let edges = count(*edges, "edge", "edges");
+                write!(f, "the shell has {edges} with more triangles than the model has faces")
+            }
+            AuditIssue::InsideOut { volume } => {
+                write!(f, "the shell is inside out: its volume is {} mm³", number(*volume, 4))
+            }
+            AuditIssue::DegenerateTriangles { triangles } => {
+                write!(f, "{} without area", count(*triangles, "triangle", "triangles"))
+            }
+            AuditIssue::DuplicateTriangles { triangles } => {
+                write!(f, "{}", count(*triangles, "duplicate triangle", "duplicate triangles"))
+            }
+            AuditIssue::InvertedTriangles { triangles } => {
+                let triangles = count(*triangles, "inverted triangle", "inverted triangles");
+                write!(f, "{triangles} (orientation in parameter space)")
+            }
+            AuditIssue::FaceTurnedOver => f.write_str("all triangles of the face are inverted"),
+            AuditIssue::MisplacedVertices { vertices, distance } => {
+                let vertices = count(*vertices, "vertex is", "vertices are");
+                write!(f, "{vertices} not at their parameters, by up to {}", length_mm(*distance))
+            }
+            AuditIssue::MisplacedModelVertices { vertices } => {
+                let vertices = count(*vertices, "vertex of the model is", "vertices of the model are");
+                write!(f, "{vertices} elsewhere in the mesh")
+            }
+            AuditIssue::RepeatedModelVertices { vertices } => {
+                let vertices = count(*vertices, "vertex of the model is", "vertices of the model are");
+                write!(f, "{vertices} in the mesh more than once")
+            }
+            AuditIssue::MisplacedEdgeSample { distance } => {
+                write!(f, "a vertex of the edge is {} off its curve", length_mm(*distance))
+            }
+            AuditIssue::BrokenPolyline(defect) => write!(f, "the polyline of the edge {defect}"),
+            AuditIssue::WrongNormals { corners } => {
+                let normals = count(*corners, "normal is", "normals are");
+                write!(f, "{normals} not normal to the surface")
+            }
+            AuditIssue::OverTolerance { error, tolerance, triangles, at_poles, chords, slivers } => write!(
+                f,
+                "the error is up to {}, over the tolerance of {} (triangles {}, at poles {}, chords {}, \
+                 slivers {})",
+                length_mm(*error),
+                length_mm(*tolerance),
+                length_mm(*triangles),
+                length_mm(*at_poles),
+                length_mm(*chords),
+                length_mm(*slivers),
+            ),
+            AuditIssue::OverAngle { angle, limit } => write!(
+                f,
+                "the surface turns by {:.3}° along a mesh edge, over the limit of {:.3}°",
+                angle.to_degrees(),
+                limit.to_degrees()
+            ),
+            AuditIssue::Unproven => f.write_str("the reported error is not proven"),
+            AuditIssue::UnderstatedError { claimed, found } => write!(
+                f,
+                "the reported proven error {} is below the recomputed {}",
+                length_mm(*claimed),
+                length_mm(*found)
+            ),
+            AuditIssue::UnderstatedGap { claimed, found } => write!(
+                f,
+                "the reported gap {} is below the recomputed {}",
+                length_mm(*claimed),
+                length_mm(*found)
+            ),
         }
+    }
+}
+
+impl fmt::Display for MeshDefect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MeshDefect::Origins { positions, origins } => {
+                write!(f, "{positions} positions and {origins} origins")
+            }
+            MeshDefect::Faces { found, expected } => write!(f, "{found} of {expected} faces"),
+            MeshDefect::Edges { found, expected } => write!(f, "{found} of {expected} edges"),
+            MeshDefect::NotFinite { position } => write!(f, "position {position} is not finite"),
+            MeshDefect::EdgePosition => f.write_str("an edge refers to a position that does not exist"),
+            MeshDefect::FaceCorner { face } => {
+                write!(f, "face {face} refers to corners that do not exist")
+            }
+            MeshDefect::UnknownOrigins { positions } => {
+                let positions = count(*positions, "position has", "positions have");
+                write!(f, "{positions} an origin that is not in the model")
+            }
+            MeshDefect::NoSurface => f.write_str("a face without a surface has triangles"),
+        }
+    }
+}
+
+impl fmt::Display for PolylineDefect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PolylineDefect::OnePoint => f.write_str("has one point"),
+            PolylineDefect::NoCurve => f.write_str("has no curve in the model"),
+            PolylineDefect::ForeignSample { place } => {
+                write!(f, "has a point of something else at place {place}")
+            }
+            PolylineDefect::Unordered { chord } => write!(f, "runs backwards at chord {chord}"),
+        }
+    }
+}
+
+/// `, 3 of them in the file`; nothing for none.
+struct InFile(usize);
+
+impl fmt::Display for InFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            0 => Ok(()),
+            n => write!(f, ", {n} of them in the file"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_have_singular_and_plural() {
+        let one = AuditIssue::InvertedTriangles { triangles: 1 };
+        assert_eq!(one.to_string(), "1 inverted triangle (orientation in parameter space)");
+        let two = AuditIssue::MissingChords { chords: 2, edge: None };
+        assert_eq!(two.to_string(), "2 chords of its edges are not on the boundary of the face's mesh");
+        let open = AuditIssue::OpenShell { open_edges: 4, in_file: 1 };
+        assert_eq!(
+            open.to_string(),
+            "the shell is closed in the file and its mesh has 4 open edges, 1 of them in the file"
+        );
     }
 }
