@@ -163,13 +163,13 @@ fn a_moved_vertex_on_an_edge_is_found() {
                     mesh.positions[line[i] as usize] += direction * 2.0 * sample.tolerance;
                 });
             };
-            moved(across, &["misplaced-vertices"]);
-            moved(tangent.cross(across), &["misplaced-vertices"]);
+            moved(across, &["misplaced-edge-sample"]);
+            moved(tangent.cross(across), &["misplaced-edge-sample"]);
             // Along its curve it stays on the curve; but not where the faces' parameters say.
             moved(tangent, &["misplaced-vertices", "understated-gap"]);
         }
         let p = sample.mesh.origins.iter().position(|o| matches!(o, Origin::Vertex(_))).unwrap();
-        sample.expect("a moved corner", &["misplaced-vertices"], |mesh| {
+        sample.expect("a moved corner", &["misplaced-model-vertices"], |mesh| {
             mesh.positions[p] += DVec3::X * 2.0 * sample.tolerance;
         });
     }
@@ -323,7 +323,7 @@ fn other_faults_are_found() {
                 mesh.faces[f].triangles[0][1] = u32::MAX;
             });
         }
-        sample.expect("a crack", &["broken-polyline", "malformed-mesh"], |mesh| {
+        sample.expect("a crack", &["repeated-model-vertices", "broken-polyline", "malformed-mesh"], |mesh| {
             // One face gets a vertex of its own where it should share the model's.
             let c = mesh.faces[0]
                 .corners
