@@ -4,8 +4,8 @@
 //! surface is glued to itself), the triangles cover the face, and nothing else, once. A hole that was filled lacks its chords; a region
 //! that is missing ends where the face has no edge.
 
-use crate::halves::Half;
 use crate::context::Context;
+use crate::halves::Half;
 use chordal_brep::{Face, Loop};
 use chordal_mesh::FaceMesh;
 

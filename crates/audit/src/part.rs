@@ -182,10 +182,6 @@ fn add_shells(context: &Context<'_>, faces: &[FaceFindings], audit: &mut PartAud
     }
     for (index, _) in faces.iter().enumerate().filter(|&(i, f)| f.turned_over && !vouched[i]) {
         let source = part.faces[index].source;
-        audit.problems.push(Problem::new(
-            Subject::Face(index as u32),
-            source,
-            AuditIssue::FaceTurnedOver,
-        ));
+        audit.problems.push(Problem::new(Subject::Face(index as u32), source, AuditIssue::FaceTurnedOver));
     }
 }

@@ -1,9 +1,9 @@
 //! The bounds of one face, recomputed: its triangles, its chords, and what lies between the two sides of cuts.
 
 use crate::boundary::Boundary;
+use crate::chart::Chart;
 use crate::context::Context;
 use crate::cuts::{self, Cut};
-use crate::chart::Chart;
 use crate::fan::{Fan, Side, fan_bound};
 use crate::findings::{FaceFindings, Log};
 use crate::precision::{AIM, CHUNK};

@@ -61,7 +61,10 @@ fn every_model_audits_clean() {
                         println!("owned up: {line}");
                         continue;
                     }
-                    match KNOWN.iter().find(|known| known.0 == name && known.1.contains(&problem.issue.code())) {
+                    match KNOWN
+                        .iter()
+                        .find(|known| known.0 == name && known.1.contains(&problem.issue.code()))
+                    {
                         Some(known) => println!("known ({}): {line}", known.2),
                         None => writeln!(faults, "{line}").unwrap(),
                     }

@@ -119,10 +119,14 @@ fn a_doubled_triangle_is_found() {
                 let copy = mesh.faces[f].triangles[t];
                 mesh.faces[f].triangles.push(copy);
             });
-            sample.expect("a triangle on its own back", &["duplicate-triangles", "inverted-triangles"], |mesh| {
-                let [a, b, c] = mesh.faces[f].triangles[t];
-                mesh.faces[f].triangles.push([b, a, c]);
-            });
+            sample.expect(
+                "a triangle on its own back",
+                &["duplicate-triangles", "inverted-triangles"],
+                |mesh| {
+                    let [a, b, c] = mesh.faces[f].triangles[t];
+                    mesh.faces[f].triangles.push([b, a, c]);
+                },
+            );
         }
     }
 }
@@ -263,7 +267,12 @@ fn too_coarse_a_mesh_is_found() {
         );
         let angle = AuditOptions::new(sample.tolerance).with_angle(Some(0.01));
         let audit = audit_part(&sample.part, &sample.mesh, &angle, None);
-        assert!(audit.problems.iter().any(|p| p.issue.code() == "over-angle"), "{}: {:?}", sample.name, audit.problems);
+        assert!(
+            audit.problems.iter().any(|p| p.issue.code() == "over-angle"),
+            "{}: {:?}",
+            sample.name,
+            audit.problems
+        );
     }
 }
 

@@ -35,11 +35,13 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &mut [Meshe
         .par_iter()
         .zip(parts.par_iter_mut())
         .zip(resolved.uses.par_iter().zip(&resolved.parts))
-        .map(
-            |((part, meshed), (part_use, options))| {
-                if part_use.instances == 0 { AuditedPart::default() } else { audit(part, meshed, options, part_use.scale) }
-            },
-        )
+        .map(|((part, meshed), (part_use, options))| {
+            if part_use.instances == 0 {
+                AuditedPart::default()
+            } else {
+                audit(part, meshed, options, part_use.scale)
+            }
+        })
         .collect()
 }
 
