@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Checks that every relative link and picture in the Markdown files of a folder leads to a file, and every `#anchor`
-to a heading. Needs Python only.
+"""Checks the Markdown files of a folder: links, anchors and the width of lines. Needs Python and git only.
 
-    tools/check_links.py [FOLDER]
+    tools/check_docs.py [FOLDER]
 
-Exits with 1 and prints one line for each broken link.
+Every relative link and picture must lead to a file, every `#anchor` to a heading, and no line may be wider than 110
+columns. Prints one line for each fault and exits with 1 if there is one.
 """
 
 import argparse
@@ -13,6 +13,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+# As wide as the code (`max_width` in rustfmt.toml).
+COLUMNS = 110
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 
@@ -24,9 +26,14 @@ def main() -> int:
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=folder, capture_output=True,
                             text=True, check=True).stdout.split()
     files = [folder / name for name in listed if (folder / name).exists()]
-    faults = [fault for file in files for fault in broken_links(file)]
-    print("\n".join(faults) or f"{len(files)} documents: all links lead somewhere")
+    faults = [f"{file.relative_to(folder)}{fault}" for file in files for fault in wide_lines(file) + broken_links(file)]
+    print("\n".join(faults) or f"{len(files)} documents: links lead somewhere, lines are at most {COLUMNS} columns wide")
     return 1 if faults else 0
+
+
+def wide_lines(file: Path) -> list[str]:
+    lines = file.read_text(encoding="utf-8").splitlines()
+    return [f":{number}: {len(line)} columns" for number, line in enumerate(lines, 1) if len(line) > COLUMNS]
 
 
 def broken_links(file: Path) -> list[str]:
@@ -38,9 +45,9 @@ def broken_links(file: Path) -> list[str]:
         path, _, anchor = target.partition("#")
         goal = (file.parent / path) if path else file
         if not goal.exists():
-            faults.append(f"{file}: {target}: no such file")
+            faults.append(f": {target}: no such file")
         elif anchor and goal.suffix == ".md" and anchor not in anchors(goal):
-            faults.append(f"{file}: {target}: no such heading")
+            faults.append(f": {target}: no such heading")
     return faults
 
 
