@@ -1,27 +1,28 @@
-#!/usr/bin/env python
+#!/usr/bin/env python3
 """Runs the binary on the corpus and on its broken files, and compares with what the two INDEX.tsv files promise.
 
-    tools/check_corpus.py [--binary target/release/chordal] [--corpus corpus] [--tolerance 0.1%] [--timeout 60]
+    tools/check_corpus.py [--binary PROGRAM] [--corpus corpus] [--tolerance 0.1%] [--timeout 60]
 
 Needs nothing but Python. Exits with 1 where anything differs; one line for each difference.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from arguments import ROOT, add_binary, parser_of
+
 Index = list[dict[str, str]]
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
-    parser.add_argument("--corpus", type=Path, default=Path("corpus"))
+    parser = parser_of(__doc__)
+    add_binary(parser)
+    parser.add_argument("--corpus", type=Path, default=ROOT / "corpus")
     parser.add_argument("--tolerance", default="0.1%")
     parser.add_argument("--timeout", type=float, default=60)
     args = parser.parse_args()

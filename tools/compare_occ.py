@@ -1,8 +1,9 @@
-#!/usr/bin/env python
+#!/usr/bin/env python3
 """Times reading and meshing against OpenCASCADE: CPU seconds in process, warmed, the two by turns, one thread.
 
-    tools/compare_occ.py [--models ../shared/models/step] [--only PATTERN] [--binary target/release/chordal]
-                         [--tolerance 0.1%] [--results docs/results/speed]
+    tools/compare_occ.py MODELS [--only PATTERN] [--binary PROGRAM] [--tolerance 0.1%] [--out out/tables]
+
+Writes speed.tsv and speed.md into --out. Needs cadquery-ocp (tools/requirements.txt).
 
 OpenCASCADE: STEPCAFControl_Reader (read and transfer) + BRepMesh_IncrementalMesh(shape, deflection, False, 0.5, False).
 Ours: `chordal bench` at the same absolute deflection and `--angle` of 0.5 rad. A file is run by each side by turns; the
@@ -25,11 +26,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from OCP.BRep import BRep_Tool
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.TopLoc import TopLoc_Location
-
-from occ_reading import StepFile
+from arguments import add_binary, add_models, add_out, parser_of
 
 ANGLE = 0.5
 SUFFIXES = {".step", ".stp"}
@@ -79,19 +76,20 @@ def main() -> int:
         pairs.append(pair)
         print(f"{model.name}: {pair.occ.total:.3f} / {pair.ours.total:.3f} = {pair.ratio:.1f}", file=sys.stderr,
               flush=True)
-    args.results.parent.mkdir(parents=True, exist_ok=True)
+    args.out.mkdir(parents=True, exist_ok=True)
     text = markdown(pairs, errors, startups(args.binary), args.tolerance)
-    args.results.with_name(args.results.name + ".md").write_text(text, encoding="utf-8")
+    (args.out / "speed.md").write_text(text, encoding="utf-8")
+    (args.out / "speed.tsv").write_text(tsv(pairs), encoding="utf-8")
     return 0 if pairs and not errors else 1
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--models", type=Path, default=Path("../shared/models/step"))
+    parser = parser_of(__doc__)
+    add_models(parser)
     parser.add_argument("--only", nargs="+", default=["*"], help="shell patterns of file names")
-    parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
+    add_binary(parser)
     parser.add_argument("--tolerance", default="0.1%")
-    parser.add_argument("--results", type=Path, default=Path("docs/results/speed"))
+    add_out(parser, "out/tables", "folder for the tables")
     return parser.parse_args()
 
 
@@ -124,6 +122,13 @@ def run_ours(binary: Path, model: Path, tolerance: str) -> dict:
 
 def run_occ(model: Path, deflection: float, timing: Timing) -> tuple[float, int]:
     """One run in this process; returns its CPU seconds and the number of faces."""
+    # Imported here, so that --help needs no kernel. The first run warms up and is not counted.
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.TopLoc import TopLoc_Location
+
+    from occ_reading import StepFile
+
     started = time.process_time()
     file = StepFile(model)
     was_read = time.process_time()
@@ -151,6 +156,18 @@ def startup(command: Sequence[str | Path]) -> float:
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     return statistics.median(seconds)
+
+
+def tsv(pairs: Sequence[Pair]) -> str:
+    """The table that tools/plot_results.py draws."""
+    names = ["model", "faces", "deflection_mm", "occ_read", "occ_mesh", "our_read", "our_mesh", "ratio", "occ_triangles",
+             "our_triangles"]
+    lines = ["\t".join(names)]
+    for p in sorted(pairs, key=lambda p: p.ratio):
+        seconds = [statistics.median(t) for t in (p.occ.read, p.occ.mesh, p.ours.read, p.ours.mesh)]
+        cells = [p.model, p.faces, p.deflection, *seconds, p.ratio, p.occ.triangles, p.ours.triangles]
+        lines.append("\t".join(map(str, cells)))
+    return "\n".join(lines) + "\n"
 
 
 def markdown(pairs: Sequence[Pair], errors: Sequence[str], started: dict[str, float], tolerance: str) -> str:

@@ -4,7 +4,14 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-bench=${1:?usage: tools/glu_bench.sh path/to/gpu-bench [WIDTH HEIGHT]}
+usage="Usage: tools/glu_bench.sh GPU_BENCH [WIDTH HEIGHT]
+
+GPU_BENCH is the program gpu-bench of crates/gpu. Prints frames per second of Mesa's GLU NURBS as a table in Markdown."
+case ${1:-} in
+-h | --help) echo "$usage" && exit 0 ;;
+'') echo "$usage" >&2 && exit 2 ;;
+esac
+bench=$1
 width=${2:-640}
 height=${3:-480}
 work=$(mktemp -d)

@@ -1,6 +1,7 @@
+#!/usr/bin/env python3
 """Files that are not STEP: what sewing made of them, and how far the meshes are from the surfaces of another kernel.
 
-    measure_exchange.py CHORDAL VERIFY.py MODELS [--only NAME …] [--out TABLE.md]
+    tools/measure_exchange.py MODELS --verify VERIFIER.py [--binary PROGRAM] [--only NAME …] [--out TABLE.md]
 
 MODELS holds one folder per format (iges, brep, iv, x3d, obj, json, 3dm). Each file is meshed at 0.1 % of its diagonal with
 `--sew auto`. The reference is never our own reader's. OpenCASCADE reads IGES and BREP, and the verifier (`--verify` of `measure_models.py`) samples
@@ -14,13 +15,14 @@ surfaces; sewing's largest move is within ours).
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+
+from arguments import add_binary, add_models, add_verifier, parser_of
 
 FOLDERS = ["iges", "brep", "iv", "x3d", "obj", "json", "3dm"]
 SKIPPED = {".txt", ".md", ".tsv"}
@@ -40,7 +42,7 @@ SEEDS = 48000
 def child(verifier: str, path: Path, mesh: str, report: Path) -> dict:
     import numpy as np
 
-    from measure_one import load_verifier
+    from measuring import load_verifier
 
     verify = load_verifier(verifier)
     told = json.loads(report.read_text())
@@ -294,7 +296,7 @@ def run(chordal: str, path: Path, folder: Path) -> tuple[dict | None, str]:
 
 def row(args, path: Path, folder: Path) -> str:
     name = f"{path.parent.name}/{path.name}"
-    told, why = run(args.chordal, path, folder)
+    told, why = run(args.binary, path, folder)
     if told is None:
         return f"| {name} |" + " |" * 11 + f" refused: {why} |"
     parts = told["sewing"]
@@ -322,17 +324,19 @@ def row(args, path: Path, folder: Path) -> str:
 
 
 def main() -> None:
-    if sys.argv[1] == "--child":
+    if sys.argv[1:2] == ["--child"]:
         verifier, path, mesh, report = sys.argv[2:]
         print("\n" + json.dumps(child(verifier, Path(path), mesh, Path(report)), default=float))
         return
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chordal")
-    parser.add_argument("verify")
-    parser.add_argument("models", type=Path)
+    parser = parser_of(__doc__)
+    add_binary(parser)
+    add_verifier(parser)
+    add_models(parser, "folder with one folder per format")
     parser.add_argument("--only", nargs="*", default=[""])
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
+    if args.verify is None:
+        parser.error("--verify is needed")
     lines = ["| file | faces | open before | open after | largest move | nearest opening | watertight | tolerance | gap | surface → mesh"
              " | mesh → surface | other kernel's gap | within tolerance + gap |", "|" + "---|" * 13]
     print("\n".join(lines))
@@ -346,4 +350,5 @@ def main() -> None:
         args.out.write_text("\n".join(lines) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()

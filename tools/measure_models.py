@@ -1,12 +1,13 @@
-#!/usr/bin/env python
+#!/usr/bin/env python3
 """Meshes every STEP file of a folder at each tolerance, measures the meshes independently, and writes one table.
 
-    tools/measure_models.py [--models ../shared/models/step] [--only PATTERN] [--skip PATTERN] [--binary target/release/chordal]
+    tools/measure_models.py MODELS [--verify VERIFIER.py] [--only PATTERN] [--skip PATTERN] [--binary PROGRAM]
                             [--tolerances 0.1% 0.01%] [--angle 20deg] [--jobs 2] [--out out/models]
-                            [--results docs/results/models] [--reuse] [--no-verify]
+                            [--results out/tables/models] [--reuse]
 
-Meshes (PLY) and reports (JSON) go to --out, the table to RESULTS.md and RESULTS.tsv. --reuse takes meshes and
-measurements that lie in --out already. tools/README.md says what the columns mean.
+Meshes (PLY) and reports (JSON) go to --out, the table to RESULTS.md and RESULTS.tsv. Without --verify nothing is
+measured, and those columns stay empty. --reuse takes meshes and measurements that are in --out already. The legend is
+in the table; tools/README.md explains how it is measured.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from arguments import add_binary, add_models, add_verifier, parser_of
 from measure_row import Row, row_of
 from measure_table import write_tables
 
@@ -32,7 +34,7 @@ SUFFIXES = {".step", ".stp"}
 @dataclass(frozen=True)
 class Settings:
     binary: Path
-    verifier: Path
+    verifier: Path | None
     out: Path
     tolerances: list[str]
     angle: str
@@ -40,7 +42,6 @@ class Settings:
     verify_timeout: float
     threads: int
     reuse: bool
-    verify: bool
     extra: tuple[str, ...] = ()
 
 
@@ -60,7 +61,7 @@ class Meshing:
 def main() -> int:
     args = arguments()
     settings = Settings(args.binary, args.verify, args.out, args.tolerances, args.angle, args.timeout,
-                        args.verify_timeout, args.threads, args.reuse, not args.no_verify)
+                        args.verify_timeout, args.threads, args.reuse)
     settings.out.mkdir(parents=True, exist_ok=True)
     expected = expected_faces(args.models)
     models = sorted(p for p in args.models.iterdir() if p.suffix.lower() in SUFFIXES
@@ -77,22 +78,21 @@ def main() -> int:
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--models", type=Path, default=Path("../shared/models/step"))
+    parser = parser_of(__doc__)
+    add_models(parser)
     parser.add_argument("--only", nargs="+", default=["*"], help="shell patterns of file names")
     parser.add_argument("--skip", nargs="+", default=[], help="shell patterns of file names to leave out")
-    parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
-    parser.add_argument("--verify", type=Path, default=Path("../shared/verify/verify.py"))
+    add_binary(parser)
+    add_verifier(parser)
     parser.add_argument("--tolerances", nargs="+", default=["0.1%", "0.01%"])
     parser.add_argument("--angle", default="20deg")
     parser.add_argument("--out", type=Path, default=Path("out/models"))
-    parser.add_argument("--results", type=Path, default=Path("docs/results/models"))
+    parser.add_argument("--results", type=Path, default=Path("out/tables/models"))
     parser.add_argument("--jobs", type=int, default=2, help="models at the same time")
     parser.add_argument("--threads", type=int, default=1, help="threads of the binary")
     parser.add_argument("--timeout", type=float, default=300, help="seconds for meshing one file once")
     parser.add_argument("--verify-timeout", type=float, default=1800, help="seconds for measuring one file")
-    parser.add_argument("--reuse", action="store_true", help="take what lies in --out already")
-    parser.add_argument("--no-verify", action="store_true", help="mesh only; the measured columns stay empty")
+    parser.add_argument("--reuse", action="store_true", help="take what is in --out already")
     return parser.parse_args()
 
 
@@ -116,7 +116,7 @@ def expected_faces(models: Path) -> dict[str, int]:
 
 def measure_model(model: Path, settings: Settings, expected: dict[str, int]) -> list[Row]:
     runs = [mesh_model(model, tolerance, settings) for tolerance in settings.tolerances]
-    measured = measure_meshes(model, runs, settings) if settings.verify else {}
+    measured = measure_meshes(model, runs, settings) if settings.verifier else {}
     rows = []
     for run in runs:
         report = json.loads(run.report.read_text()) if run.exit in (0, 1) and run.report.exists() else None

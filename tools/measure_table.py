@@ -11,7 +11,6 @@ from pathlib import Path
 from measure_row import PROMISES, Row
 
 NOTES_PER_ROW = 12
-EXPLAINED = Path(__file__).resolve().parent / "explained.tsv"
 
 
 def write_tables(rows: Sequence[Row], results: Path, described: str) -> None:
@@ -125,26 +124,16 @@ def geometric(values: Sequence[float]) -> float:
     return math.exp(sum(map(math.log, values)) / len(values)) if values else math.nan
 
 
-def explanations() -> dict[str, str]:
-    """Why a promise is broken, where somebody looked: `tools/explained.tsv`, a model and a sentence a line."""
-    if not EXPLAINED.exists():
-        return {}
-    lines = EXPLAINED.read_text(encoding="utf-8").splitlines()
-    return dict(line.split("\t", 1) for line in lines if "\t" in line)
-
-
 def one_by_one(rows: Sequence[Row]) -> list[str]:
-    """Broken promises and everything that the reports leave undone."""
-    lines, known = [], explanations()
+    """Broken promises, and every problem that the reports name."""
+    lines = []
     for row in rows:
         said = ([f"{row.message}"] if row.exit not in (0, 1) else []) + row.notes
         said += [f"not measured: {row.verify_error}"] if row.verify_error else []
         if not said and not row.broken():
             continue
         lines.append(f"- **{row.model}**, {row.tolerance}: broken: {', '.join(row.broken()) or 'none'}")
-        if row.broken() and row.model in known:
-            lines.append(f"  - looked at: {known[row.model]}")
         lines += [f"  - {note}" for note in said[:NOTES_PER_ROW]]
         if len(said) > NOTES_PER_ROW:
             lines.append(f"  - … and {len(said) - NOTES_PER_ROW} more")
-    return lines or ["Nothing is left undone."]
+    return lines or ["No problems."]

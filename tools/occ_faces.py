@@ -1,4 +1,4 @@
-#!/usr/bin/env python
+#!/usr/bin/env python3
 """Which faces OpenCASCADE itself leaves without triangles, and which have no area: to judge our failed faces by.
 
     tools/occ_faces.py MODEL [MODEL ...] [--deflection 0.1%] [--reports out/models]
@@ -10,23 +10,20 @@ OpenCASCADE fails too or the face has no area, `only we fail` where it does not.
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from OCP.Bnd import Bnd_Box
-from OCP.BRep import BRep_Tool
-from OCP.BRepBndLib import BRepBndLib
-from OCP.BRepGProp import BRepGProp
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.GProp import GProp_GProps
-from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Face
+from arguments import parser_of
 
-from occ_reading import StepFile
+# The kernel is imported where it is used, so that --help needs none.
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Face
+
+    from occ_reading import StepFile
 
 # A face has no area when its mean width (twice the area over the perimeter) is below this part of the diagonal: the
 # coordinates of a file seldom hold more digits.
@@ -42,6 +39,12 @@ class Finding:
 
 def examine(model: Path, deflection: str) -> tuple[Counter[Finding], float]:
     """Faces without triangles or area, with their numbers of instances; and the diagonal."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.TopLoc import TopLoc_Location
+
+    from occ_reading import StepFile
+
     file = StepFile(model)
     diagonal = diagonal_of(file)
     absolute = diagonal * float(deflection[:-1]) / 100 if deflection.endswith("%") else float(deflection)
@@ -58,18 +61,27 @@ def examine(model: Path, deflection: str) -> tuple[Counter[Finding], float]:
 
 
 def diagonal_of(file: StepFile) -> float:
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRepBndLib import BRepBndLib
+
     box = Bnd_Box()
     BRepBndLib.AddOptimal_s(file.shape, box, False, False)
     return box.CornerMin().Distance(box.CornerMax())
 
 
 def area_of(face: TopoDS_Face) -> float:
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, properties)
     return abs(properties.Mass())
 
 
 def perimeter_of(face: TopoDS_Face) -> float:
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
     properties = GProp_GProps()
     BRepGProp.LinearProperties_s(face, properties)
     return properties.Mass()
@@ -86,7 +98,7 @@ def failed_by_us(reports: Path, model: Path) -> dict[str, str]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("models", nargs="+", type=Path)
     parser.add_argument("--deflection", default="0.1%", help="mm, or a percentage of the diagonal (default 0.1%%)")
     parser.add_argument("--reports", type=Path, help="folder of our reports, as measure_models.py leaves it")

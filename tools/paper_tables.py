@@ -1,15 +1,20 @@
 #!/usr/bin/env python3
-"""The tables of Balázs, Guthe, Klein 2004 on our models: docs/results/paper_tables.md.
+"""The tables of Balázs, Guthe, Klein 2004 on other models, as one page in Markdown.
 
-    tools/paper_tables.py CHORDAL FOLDER [-o docs/results/paper_tables.md] [--tolerance 0.1%]
+    paper_tables.py MODELS [NAME ...] [--binary PROGRAM] [-o out/tables/paper_tables.md] [--tolerance 0.1%]
 
-CHORDAL is a release build of the program, FOLDER holds the models (below it, at any depth). One thread, shortest of three runs.
+One thread, the shortest of three runs.
 """
 
-import argparse
 import json
 import pathlib
 import subprocess
+import sys
+
+# The measuring tools of the repository are modules of these scripts.
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+
+from arguments import add_binary, add_models, parser_of  # noqa: E402
 
 MODELS = [
     "fusee.stp",
@@ -31,12 +36,12 @@ THEIRS = {
 }
 
 
-def measured(program, folder, tolerance):
+def measured(program, folder, names, tolerance):
     tables = []
-    for name in MODELS:
+    for name in names:
         found = sorted(pathlib.Path(folder).rglob(name))
         if not found:
-            print(f"{name}: not there, left out")
+            print(f"{name}: absent, left out")
             continue
         line = [program, "bench", "--papers", "--angle", "off", "--face-timeout", "4"]
         line += ["--tolerance", tolerance, str(found[0])]
@@ -171,22 +176,23 @@ def ratios_table(tables):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program")
-    parser.add_argument("folder")
-    parser.add_argument("-o", "--output", default="docs/results/paper_tables.md")
+    parser = parser_of(__doc__)
+    add_models(parser, "folder with the models, of any depth")
+    parser.add_argument("names", metavar="NAME", nargs="*", default=MODELS, help="files of MODELS [default: six public ones]")
+    add_binary(parser)
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/tables/paper_tables.md"))
     parser.add_argument("--tolerance", default="0.1%")
     parser.add_argument("--json", help="keep the numbers here")
     args = parser.parse_args()
-    tables = measured(args.program, args.folder, args.tolerance)
+    tables = measured(args.binary, args.models, args.names, args.tolerance)
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps(tables, indent=1))
     models = ", ".join(f"{m['model']} ({m['faces']} faces, {m['tolerance']:.4g} mm)" for m in tables)
-    notes = pathlib.Path(__file__).with_name("paper_tables_notes.md").read_text()
     out = ["# The tables of Balázs, Guthe, Klein 2004 on our models", ""]
-    out += [f"`tools/paper_tables.py CHORDAL MODELS` at {args.tolerance}: {models}.", "One thread, shortest of three runs, without limit of angle, `--face-timeout 4`.", ""]
+    out += [f"`paper_tables.py MODELS` at {args.tolerance}: {models}.", "One thread, shortest of three runs, without limit of angle, `--face-timeout 4`.", ""]
     out += edges_table(tables) + surfaces_table(tables) + systems_table(tables) + ratios_table(tables)
-    pathlib.Path(args.output).write_text("\n".join(out) + "\n" + notes)
+    args.output.parent.mkdir(parents=True, exist_ok=True)
+    args.output.write_text("\n".join(out) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

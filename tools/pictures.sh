@@ -1,11 +1,24 @@
 #!/usr/bin/env bash
 # Draws models into a folder, to be looked at: by their mesh, and exactly with both ways of trimming, at three zooms.
-#     tools/pictures.sh FOLDER [MODEL…]
-# Without models it takes fourteen of the corpus: the three by which trimming is shown, trims that break tessellators, and solids whose
-# neighbours are to be looked at close up. CHORDAL names the program (default: the release build with the feature `render`); SIZE the
-# size of a picture.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
+
+usage() {
+    cat <<'TEXT'
+Usage: tools/pictures.sh FOLDER [MODEL…]
+
+Without models: fourteen of the corpus, with trims that break tessellators and solids to be looked at close up.
+
+Environment:
+  CHORDAL   the program, built with the feature `render` [default: target/release/chordal]
+  SIZE      size of a picture [default: 480x360]
+TEXT
+}
+
+case ${1:-} in
+-h | --help) usage && exit 0 ;;
+'') usage >&2 && exit 2 ;;
+esac
 folder=$1
 shift
 chordal=${CHORDAL:-$root/target/release/chordal}
@@ -26,7 +39,7 @@ for model in "$@"; do
             *) mode=(--mode nurbs --trim "$way") ;;
             esac
             "$chordal" render "$model" -o "$folder/${name%.*}-$zoom-$way.png" "${mode[@]}" --zoom "$zoom" --size "$size" --quiet ||
-                [ $? = 1 ] # 1: something of the model was left undone, and said
+                [ $? = 1 ] # 1: the model has problems, which the program has listed
         done
     done
 done

@@ -1,15 +1,19 @@
-"""Solids taken apart and sewn again: `sewing_apart.py CHORDAL MODELS [--out TABLE.md]` prints a table in Markdown.
+#!/usr/bin/env python3
+"""Solids taken apart into single faces and sewn again: prints a table in Markdown.
+
+    tools/sewing_apart.py MODELS [--binary PROGRAM] [--out TABLE.md]
 
 Every STEP file of MODELS is written with `convert --unsewn`: each face an island with edges of its own, nothing shared, nothing
 called closed. It is read again, sewn with `--sew auto` and meshed at 0.2 % with the proven bound, as is the model as it came.
 The figures are those of the reports; *fails* says what the check asks for and did not get.
 """
 
-import argparse
 import json
 import subprocess
 import tempfile
 from pathlib import Path
+
+from arguments import add_binary, add_models, parser_of
 
 SUFFIXES = {".step", ".stp"}
 TIMEOUT = 300
@@ -17,7 +21,7 @@ TIMEOUT = 300
 LOOSE = 1e-3
 
 
-def meshed(chordal: str, model: Path, folder: Path) -> dict | None:
+def meshed(chordal: Path, model: Path, folder: Path) -> dict | None:
     """The report of one run."""
     report = folder / "report.json"
     report.unlink(missing_ok=True)
@@ -26,7 +30,7 @@ def meshed(chordal: str, model: Path, folder: Path) -> dict | None:
     return json.loads(report.read_text()) if report.exists() else None
 
 
-def row(chordal: str, model: Path, folder: Path) -> str:
+def row(chordal: Path, model: Path, folder: Path) -> str:
     apart = folder / "apart.json"
     apart.unlink(missing_ok=True)
     subprocess.run([chordal, "convert", model, "--unsewn", "-o", apart], capture_output=True, timeout=TIMEOUT)
@@ -49,9 +53,9 @@ def row(chordal: str, model: Path, folder: Path) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chordal")
-    parser.add_argument("models", type=Path)
+    parser = parser_of(__doc__)
+    add_binary(parser)
+    add_models(parser)
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
     head = ["file", "faces", "closed shells of the file, watertight", "open before", "open after", "tolerance, mm",
@@ -59,10 +63,11 @@ def main() -> None:
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     with tempfile.TemporaryDirectory() as folder:
         for model in sorted(p for p in args.models.iterdir() if p.suffix.lower() in SUFFIXES):
-            lines.append(row(args.chordal, model, Path(folder)))
+            lines.append(row(args.binary, model, Path(folder)))
             print(lines[-1], flush=True)
     if args.out:
         args.out.write_text("\n".join(lines) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()

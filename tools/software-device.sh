@@ -1,7 +1,13 @@
 #!/usr/bin/env bash
-# The tests of crates/gpu need a Vulkan device. Where there is none this installs Mesa's software device (Debian and
-# Ubuntu, as root), or says what to install.
+# Makes sure that there is a Vulkan device for the tests of crates/gpu: installs Mesa's software device where there is
+# none (Debian and Ubuntu, as root), or says what to install.
 set -euo pipefail
+
+if [ $# -gt 0 ]; then
+    echo "Usage: tools/software-device.sh"
+    echo "Installs Mesa's software Vulkan device (lavapipe) on Debian and Ubuntu, as root, if no Vulkan device is there."
+    case $1 in -h | --help) exit 0 ;; *) exit 2 ;; esac
+fi
 
 drivers() { compgen -G '/usr/share/vulkan/icd.d/*.json' || compgen -G '/etc/vulkan/icd.d/*.json'; }
 loader() { ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; }
@@ -15,7 +21,7 @@ if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
     exit 0
 fi
 cat >&2 <<'TEXT'
-There is no Vulkan device here, and the tests of crates/gpu need one. Install a driver, or Mesa's software device:
+No Vulkan device was found. Install a graphics driver, or Mesa's software device:
     Debian, Ubuntu: sudo apt-get install mesa-vulkan-drivers libvulkan1
     Fedora:         sudo dnf install mesa-vulkan-drivers vulkan-loader
     Arch:           sudo pacman -S vulkan-swrast vulkan-icd-loader

@@ -1,11 +1,10 @@
-#!/usr/bin/env python
+#!/usr/bin/env python3
 """The survey's comparison of tessellation strategies with measured numbers, and the 2001 paper's table of phases.
 
-    tools/survey_table.py [--models ../shared/models] [--binary target/release/chordal] [--tolerance 0.1%]
-                          [--results docs/results/survey.md]
+    survey_table.py [MODELS] [--binary PROGRAM] [--tolerance 0.1%] [--results out/tables/survey.md]
 
-Runs `chordal compare … --both-bounds --json` on some models of the corpus and, where the folder is there, on free-form
-real ones; counts lines of code of each strategy's own parts. One command, one file.
+Runs `chordal compare … --both-bounds --json` on six models of the corpus and on those of four public ones that MODELS
+holds.
 """
 
 from __future__ import annotations
@@ -17,41 +16,34 @@ import subprocess
 import sys
 from pathlib import Path
 
+# The measuring tools of the repository are modules of these scripts.
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
+
+from arguments import ROOT, add_binary, parser_of  # noqa: E402
+
 CORPUS = ["blade", "fillet_bspline", "torus_hole", "bracket", "spline_ball", "pipe_elbow"]
-REAL = ["step/trj8_k1-db-214.stp", "step/ec_exhaust-A.stp", "step/fusee.stp", "iges/bearing.iges"]
+REAL = ["trj8_k1-db-214.stp", "ec_exhaust-A.stp", "fusee.stp", "bearing.iges"]
 STRATEGIES = ["grid", "cells", "coving", "delaunay-uniform", "delaunay-adaptive", "recursive", "quadtree", "bezier",
               "default"]
-# The files that only this strategy needs, beside what all share.
-OWN = {
-    "grid": ["grid", "derivatives"],
-    "cells": ["grid", "derivatives"],
-    "coving": ["coving", "size", "grid", "derivatives"],
-    "delaunay-uniform": ["delaunay", "size"],
-    "delaunay-adaptive": ["delaunay"],
-    "recursive": ["recursive", "derivatives"],
-    "quadtree": ["quadtree", "node", "leaf_mesh", "tracking", "chords"],
-    "bezier": ["bezier", "projected", "node", "scanlines", "loop_tree"],
-    "default": ["../place", "../metric"],
-}
-
 
 def main() -> int:
     args = arguments()
-    models = [Path("corpus") / f"{name}.step" for name in CORPUS]
-    models += [args.models / name for name in REAL if (args.models / name).exists()]
+    models = [ROOT / "corpus" / f"{name}.step" for name in CORPUS]
+    models += [path for name in REAL if args.models and (path := next(args.models.rglob(name), None))]
     compared = {model.name: compare(model, args) for model in models}
     text = survey(compared, args) + phases(compared)
+    args.results.parent.mkdir(parents=True, exist_ok=True)
     args.results.write_text(text, encoding="utf-8")
     print(f"{len(models)} models -> {args.results}", file=sys.stderr)
     return 0
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--models", type=Path, default=Path("../shared/models"))
-    parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
+    parser = parser_of(__doc__)
+    parser.add_argument("models", type=Path, nargs="?", help="folder with free-form models, of any depth [default: the corpus alone]")
+    add_binary(parser)
     parser.add_argument("--tolerance", default="0.1%")
-    parser.add_argument("--results", type=Path, default=Path("docs/results/survey.md"))
+    parser.add_argument("--results", type=Path, default=Path("out/tables/survey.md"))
     return parser.parse_args()
 
 
@@ -60,16 +52,6 @@ def compare(model: Path, args: argparse.Namespace) -> dict:
                "--strategies", ",".join(STRATEGIES)]
     print(model.name, file=sys.stderr, flush=True)
     return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
-
-
-def lines_of_code(names: list[str]) -> int:
-    """Lines that are neither empty, comment nor test."""
-    count = 0
-    for name in names:
-        text = (Path("crates/tessellate/src/strategy") / f"{name}.rs").resolve().read_text(encoding="utf-8")
-        text = text.split("#[cfg(test)]\nmod tests")[0]
-        count += sum(1 for line in text.splitlines() if line.strip() and not line.strip().startswith("//"))
-    return count
 
 
 def rows_of(compared: dict[str, dict], strategy: str, bound: str) -> list[tuple[dict, float]]:
@@ -82,19 +64,18 @@ def survey(compared: dict[str, dict], args: argparse.Namespace) -> str:
         "# The survey's comparison, measured",
         "",
         "The survey of the Blender wiki compares uniform grid cut, Delaunay triangulation and recursive subdivision by plus and "
-        f"minus signs. Here are numbers for its rows that can be measured (`tools/survey_table.py`, {len(compared)} models at "
+        f"minus signs. Here are numbers for its rows that can be measured (`survey_table.py`, {len(compared)} models at "
         f"{args.tolerance}, angle off; seconds are CPU time of all threads). "
         "Ratios are geometric means over the models.",
         "",
-        "- *Code*: lines of the strategy's own parts, beside those that all share (the survey's complexity 1 : 3 : 6).",
         "- *Triangles*: over the default's with the same bound (its *uses triangles efficiently*), and over the fewest possible.",
         "- *Error*: its *rigorous error bound*. Proven: the largest proven error of all models over the tolerance. Estimated: the "
         "largest measured one: what the method's own estimate is worth without a proof.",
         "- *Sewing*: failed faces; every mesh that the default closes is closed, since edges belong to no strategy.",
         "",
-        "| strategy | code | triangles / default | triangles / fewest | estimated only: triangles / default | proven error / tolerance | "
+        "| strategy | triangles / default | triangles / fewest | estimated only: triangles / default | proven error / tolerance | "
         "estimated only: measured error / tolerance | seconds / default | failed faces |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "|---|---|---|---|---|---|---|---|",
     ]
     base = {bound: [row for row, _ in rows_of(compared, "default", bound)] for bound in ("proven", "estimated")}
     for strategy in STRATEGIES:
@@ -106,7 +87,7 @@ def survey(compared: dict[str, dict], args: argparse.Namespace) -> str:
                   for row, tolerance in proven]
         measured = max(row["measured_error"] / tolerance for row, tolerance in estimated)
         failed = sum(row["failed_faces"] for row, _ in proven + estimated)
-        out.append(f"| `{strategy}` | {lines_of_code(OWN[strategy])} | {share['proven']:.2f} | "
+        out.append(f"| `{strategy}` | {share['proven']:.2f} | "
                    f"{mean([row['ratio'] for row, _ in proven]):.2f} | {share['estimated']:.2f} | {largest(errors)} | "
                    f"{measured:.2f} | {seconds:.1f} | {failed} |")
     return "\n".join(out) + "\n\n"

@@ -1,8 +1,8 @@
-#!/usr/bin/env python
+#!/usr/bin/env python3
 """Rotated, mirrored and scaled variants of every corpus model keep all promises; so do 1, 2 and 8 threads.
 
-    tools/variants.py [--binary target/release/chordal] [--corpus corpus] [--only PATTERN] [--tolerance 0.1%]
-                      [--angle 20deg] [--results docs/results/variants] [--keep FOLDER]
+    tools/variants.py [--binary PROGRAM] [--corpus corpus] [--only PATTERN] [--tolerance 0.1%] [--angle 20deg]
+                      [--results out/tables/variants] [--keep FOLDER]
 
 The tolerance is fixed in model terms: in mm as the original resolves it, times 1000 where the model is 1000 times
 larger. A variant must have the original's exit code and faces, watertight shells and a proven error within the
@@ -21,7 +21,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from variants_text import VARIANTS
+from arguments import ROOT, add_binary, parser_of
 
 THREADS = (1, 2, 8)
 
@@ -77,14 +77,14 @@ def main() -> int:
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
-    parser.add_argument("--corpus", type=Path, default=Path("corpus"))
+    parser = parser_of(__doc__)
+    add_binary(parser)
+    parser.add_argument("--corpus", type=Path, default=ROOT / "corpus")
     parser.add_argument("--only", nargs="+", default=["*"], help="shell patterns of model names")
     parser.add_argument("--tolerance", default="0.1%")
     parser.add_argument("--angle", default="20deg")
     parser.add_argument("--timeout", type=float, default=60)
-    parser.add_argument("--results", type=Path, default=Path("docs/results/variants"))
+    parser.add_argument("--results", type=Path, default=Path("out/tables/variants"))
     parser.add_argument("--keep", type=Path, help="leave the variants in this folder")
     return parser.parse_args()
 
@@ -101,6 +101,8 @@ def examine(binary: Binary, model: Path, tolerance: str, folder: Path) -> Line |
     if len(set(meshes)) != 1:
         line.wrong.append(f"threads {THREADS}: the bytes differ")
     text = model.read_bytes().decode("latin-1")
+    from variants_text import VARIANTS
+
     for name, (change, scale) in VARIANTS.items():
         changed = change(text)
         if changed is None:
@@ -133,6 +135,8 @@ def differences(first: Run, run: Run) -> list[str]:
 
 
 def markdown(lines: list[Line], args: argparse.Namespace) -> str:
+    from variants_text import VARIANTS
+
     names = ["original", *VARIANTS]
     kept = sum(not line.wrong for line in lines)
     text = ["# Variants of the corpus", "",

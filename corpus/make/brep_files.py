@@ -6,10 +6,9 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 from brep_text import Brep
-from written import BAD, GOOD, bad, good, write_all
+from written import BAD, GOOD, bad, corpus_folder, good, write_all
 
 TURN = 2 * math.pi
 X, Y, Z, O = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
@@ -254,4 +253,4 @@ def itself() -> str:
 
 
 if __name__ == "__main__":
-    write_all(Path(__file__).resolve().parent.parent, "brep", ".brep", GOOD, BAD)
+    write_all(corpus_folder(__doc__), "brep", ".brep", GOOD, BAD)

@@ -14,7 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-FOLDER = Path(__file__).resolve().parent.parent / "exchange"
+from written import corpus_folder
+
 
 
 @dataclass(frozen=True)
@@ -336,7 +337,7 @@ def rhino_mesh_5(path: Path) -> None:
 
 @file("rhino_cut.3dm", "cut off in the middle of the second object", faces=1, exits="1", phrase="damaged")
 def rhino_cut(path: Path) -> None:
-    whole = (FOLDER / "rhino_solids_8.3dm").read_bytes()
+    whole = (Path(__file__).resolve().parent.parent / "exchange" / "rhino_solids_8.3dm").read_bytes()
     first = whole.index(struct.pack("<I", 0x20008070))
     second = whole.index(struct.pack("<I", 0x20008070), first + 4)
     path.write_bytes(whole[: second + 1000])
@@ -348,13 +349,14 @@ def rhino_head(path: Path) -> None:
 
 
 def main() -> None:
-    FOLDER.mkdir(exist_ok=True)
+    folder = corpus_folder(__doc__) / "exchange"
+    folder.mkdir(exist_ok=True)
     rows = ["file\ttests\tfaces\tclosed\texits\tphrase"]
     for f in FILES:
-        f.write(FOLDER / f.name)
+        f.write(folder / f.name)
         rows.append("\t".join([f.name, f.tests, str(f.faces), "yes" if f.closed else "no", f.exits, f.phrase]))
-    (FOLDER / "INDEX.tsv").write_text("\n".join(rows) + "\n", encoding="utf-8")
-    size = sum(path.stat().st_size for path in FOLDER.iterdir())
+    (folder / "INDEX.tsv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    size = sum(path.stat().st_size for path in folder.iterdir())
     print(f"{len(FILES)} files, {size / 1e3:.0f} kB")
 
 

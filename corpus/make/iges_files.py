@@ -6,10 +6,9 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 from iges_text import Iges
-from written import BAD, GOOD, bad, good, write_all
+from written import BAD, GOOD, bad, corpus_folder, good, write_all
 
 UV = "00010500"
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
@@ -337,4 +336,4 @@ def not_a_solid() -> str:
 
 
 if __name__ == "__main__":
-    write_all(Path(__file__).resolve().parent.parent, "iges", ".igs", GOOD, BAD)
+    write_all(corpus_folder(__doc__), "iges", ".igs", GOOD, BAD)

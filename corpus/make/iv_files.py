@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import math
 import struct
-from pathlib import Path
 
 import iv_pictures  # noqa: F401  (registers its files)
 from scene_large import scene
-from written import BAD, GOOD, bad, good, write_all
+from written import BAD, GOOD, bad, corpus_folder, good, write_all
 
 HEADER = "#Inventor V2.1 ascii\n\n"
 W = math.sqrt(0.5)
@@ -258,4 +257,4 @@ def binary_lengths() -> bytes:
 
 
 if __name__ == "__main__":
-    write_all(Path(__file__).resolve().parent.parent, "iv", ".iv", GOOD, BAD)
+    write_all(corpus_folder(__doc__), "iv", ".iv", GOOD, BAD)

@@ -3,6 +3,7 @@ about it."""
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,6 +54,14 @@ def bad(name: str, tests: str, *, exit: str, phrase: str) -> Callable[[Content],
         return content
 
     return register
+
+
+def corpus_folder(documentation: str | None) -> Path:
+    """The folder to write into, from the command line; --help prints the script's documentation."""
+    parser = argparse.ArgumentParser(description=documentation, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--corpus", type=Path, default=Path(__file__).resolve().parent.parent,
+                        help="folder to write into [default: the corpus of this repository]")
+    return parser.parse_args().corpus
 
 
 def write_all(corpus: Path, folder: str, suffix: str, goods: list[Good], bads: list[Bad]) -> None:

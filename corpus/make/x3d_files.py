@@ -7,9 +7,8 @@ tells the encoding.
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
-from written import BAD, GOOD, bad, good, write_all
+from written import BAD, GOOD, bad, corpus_folder, good, write_all
 
 VRML = "#VRML V2.0 utf8\n\n"
 CLASSIC = "#X3D V3.3 utf8\nPROFILE Interchange\nCOMPONENT NURBS : 4\n\n"
@@ -262,4 +261,4 @@ def nothing() -> str:
 
 
 if __name__ == "__main__":
-    write_all(Path(__file__).resolve().parent.parent, "x3d", ".x3d", GOOD, BAD)
+    write_all(corpus_folder(__doc__), "x3d", ".x3d", GOOD, BAD)

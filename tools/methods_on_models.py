@@ -1,15 +1,16 @@
-#!/usr/bin/env python
-"""Meshes every STEP file of a folder by every strategy, proven and estimated, measures the meshes, writes one table.
+#!/usr/bin/env python3
+"""Meshes every STEP file of a folder by every method, proven and estimated, measures the meshes, writes one table.
 
-    tools/strategies_models.py [--models ../shared/models/step] [--only PATTERN ...] [--skip PATTERN ...] [--largest KB]
-                               [--strategies NAME ...] [--bounds proven estimated] [--tolerance 0.1%] [--jobs 2]
-                               [--timeout 120] [--reuse] [--keep] [--no-verify] [--measure proven estimated] [--most-triangles N] [--out out/strategies] [--results docs/results/strategies_models]
+    methods_on_models.py MODELS [--verify VERIFIER.py] [--only PATTERN ...] [--skip PATTERN ...] [--largest KB]
+                         [--strategies NAME ...] [--bounds proven estimated] [--tolerance 0.1%] [--jobs 2]
+                         [--timeout 120] [--reuse] [--keep] [--measure proven estimated] [--most-triangles N]
+                         [--out out/methods] [--results out/tables/methods]
 
-One run of the binary per model, strategy and bound; the verifier's reference of a model is built once for all of its
-meshes. A run that does not end in --timeout seconds is a line that says so. Small files come first. Meshes are
-removed as soon as they are measured, unless --keep leaves them for a later run with --reuse, which takes what lies in
---out: mesh all files first, then measure as many as there is time for. A measurement is kept with the hash of its mesh
-and taken again for a mesh of the same bytes.
+One run of the program per model, method and bound. The verifier's reference of a model is built once for all of its
+meshes. A run that does not end in --timeout seconds is a line that says so. Small files come first. Meshes are removed
+as soon as they are measured, unless --keep leaves them for a later run with --reuse, which takes what is in --out: mesh
+all files first, then measure as many as there is time for. A measurement is kept with the hash of its mesh and taken
+again for a mesh of the same bytes.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+# The measuring tools of the repository are modules of these scripts.
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
+
+from arguments import ROOT, add_binary, add_models, add_verifier, parser_of  # noqa: E402
 from measure_models import SUFFIXES, Meshing, Settings, expected_faces, measure_meshes, mesh_model
 from measure_row import row_of
 
@@ -56,6 +61,7 @@ class Line:
 def main() -> int:
     args = arguments()
     args.out.mkdir(parents=True, exist_ok=True)
+    args.results.parent.mkdir(parents=True, exist_ok=True)
     names = args.strategies or strategies(args.binary)
     if "default" not in names:
         names.insert(0, "default")
@@ -74,18 +80,18 @@ def main() -> int:
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--models", type=Path, default=Path("../shared/models/step"))
+    parser = parser_of(__doc__)
+    add_models(parser)
     parser.add_argument("--only", nargs="+", default=["*"], help="shell patterns of file names")
     parser.add_argument("--skip", nargs="+", default=[], help="shell patterns of file names to leave out")
     parser.add_argument("--largest", type=float, default=float("inf"), help="leave out files larger than this (KB)")
-    parser.add_argument("--binary", type=Path, default=Path("target/release/chordal"))
-    parser.add_argument("--verify", type=Path, default=Path("../shared/verify/verify.py"))
+    add_binary(parser)
+    add_verifier(parser)
     parser.add_argument("--strategies", nargs="+", default=[], help="names [default: all]")
     parser.add_argument("--bounds", nargs="+", default=["proven", "estimated"], choices=["proven", "estimated"])
     parser.add_argument("--tolerance", default="0.1%")
-    parser.add_argument("--out", type=Path, default=Path("out/strategies"))
-    parser.add_argument("--results", type=Path, default=Path("docs/results/strategies_models"))
+    parser.add_argument("--out", type=Path, default=Path("out/methods"))
+    parser.add_argument("--results", type=Path, default=Path("out/tables/methods"))
     parser.add_argument("--jobs", type=int, default=2, help="models at the same time")
     parser.add_argument("--timeout", type=float, default=120, help="seconds for meshing one file once")
     parser.add_argument("--verify-timeout", type=float, default=1800, help="seconds for measuring one file")
@@ -93,7 +99,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--keep", action="store_true", help="leave the meshes in --out, to be measured later")
     parser.add_argument("--measure", nargs="+", default=["proven", "estimated"], help="bounds whose meshes are measured")
     parser.add_argument("--most-triangles", type=int, default=10**9, help="larger meshes are not measured")
-    parser.add_argument("--no-verify", action="store_true", help="mesh only; the measured columns stay empty")
     return parser.parse_args()
 
 
@@ -105,7 +110,7 @@ def wanted(model: Path, args: argparse.Namespace) -> bool:
 
 def strategies(binary: Path) -> list[str]:
     """The names that the binary knows, the default first."""
-    model = Path("corpus/ap203.step")
+    model = ROOT / "corpus" / "ap203.step"
     done = subprocess.run([binary, "compare", model, "--tolerance", "5%", "--json", "-q"], capture_output=True,
                           text=True, check=True)
     return [row["strategy"] for row in json.loads(done.stdout)["rows"]]
@@ -148,7 +153,7 @@ def known_measurements(model: Path, runs: list[Meshing], args: argparse.Namespac
     known = json.loads(kept.read_text()) if kept.exists() else {}
     hashes = {str(run.mesh): hashlib.sha256(run.mesh.read_bytes()).hexdigest() for run in runs if run.mesh.exists()}
     new = [run for run in runs if hashes.get(str(run.mesh)) not in (None, *known) and small(run, args)]
-    if new and not args.no_verify:
+    if new and args.verify:
         settings = settings_for(args, args.out / model.name, "", "")
         found = measure_meshes(model, new, replace(settings, reuse=False))
         known |= {hashes[mesh]: result for mesh, result in found.items() if "error" not in result}
@@ -167,7 +172,7 @@ def settings_for(args: argparse.Namespace, out: Path, strategy: str, bound: str)
     out.mkdir(parents=True, exist_ok=True)
     extra = ["--strategy", strategy, "--bound", bound] if strategy else []
     return Settings(args.binary, args.verify, out, [args.tolerance], "off", args.timeout, args.verify_timeout, 1,
-                    args.reuse, not args.no_verify, tuple(extra))
+                    args.reuse, tuple(extra))
 
 
 def line_of(name: str, bound: str, run: Meshing, measured: dict | None, faces: int | None) -> Line:
@@ -212,7 +217,7 @@ def table(lines: list[Line], names: list[str], args: argparse.Namespace) -> str:
     out = [
         "# Every strategy on real models",
         "",
-        f"`tools/strategies_models.py`: {len(models)} STEP files at {args.tolerance}, angle off, one thread, "
+        f"`methods_on_models.py`: {len(models)} STEP files at {args.tolerance}, angle off, one thread, "
         f"{args.timeout:g} s for each mesh.",
         "*Closed* counts the models that the default closes and the strategy does, too; *within* those whose measured "
         f"error is at most tolerance + gap, of those that were measured{limit} (by the evaluators of another kernel). Ratios are of the triangles to the fewest possible, over all models, their median.",
