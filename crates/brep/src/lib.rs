@@ -10,6 +10,7 @@ pub mod issue;
 mod part;
 mod source;
 mod unsewn;
+pub mod winding;
 
 pub use assembly::{Model, Node, Placement};
 pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};

@@ -1,6 +1,7 @@
 //! Faces from a surface and loops of curves in its parameter space: for formats that know no edges.
 //!
-//! Each loop is closed and cut at its corners ([`chain`]), loops are told apart into outer ones and holes ([`nest`]),
+//! Each loop is closed and cut at its corners ([`chain`]), loops that cross become loops that do not ([`untangle`]),
+//! loops are told apart into outer ones and holes ([`nest`]),
 //! and their pieces become edges of the part ([`edges`]). A surface without trims gets its own border ([`natural`]).
 //!
 //! What the caller gives runs in the surface's parameters; directions do not matter: outer loops are made to run
@@ -9,10 +10,12 @@
 mod chain;
 mod clip;
 mod edges;
+mod meet;
 mod natural;
 mod nest;
 #[cfg(test)]
 mod tests;
+mod untangle;
 
 use crate::Winding;
 use chordal_brep::{
@@ -102,7 +105,12 @@ pub(crate) fn add_faces(
     let groups = match problem {
         Some(reason) => Err(reason),
         None if chains.is_empty() => Ok(vec![natural::loops(surface)]),
-        None => nest::groups(surface, chains, &scale),
+        None => nest::groups(surface, chains, &scale).map(|groups| {
+            if let Some(places) = groups.untangled {
+                warnings.push(untangled_warning(look.source, trims.len(), places));
+            }
+            groups.faces
+        }),
     };
     match groups {
         Ok(groups) => groups
@@ -114,6 +122,15 @@ pub(crate) fn add_faces(
             .collect(),
         Err(reason) => vec![push_face(part, FaceGeometry::Failed(reason), Vec::new(), look)],
     }
+}
+
+fn untangled_warning(source: Source, loops: usize, places: usize) -> Warning {
+    let message = if loops == 1 {
+        format!("its trim loop crosses or touches itself at {places} places; a vertex was set at each")
+    } else {
+        format!("its {loops} trim loops cross or touch at {places} places; a vertex was set at each")
+    };
+    Warning { source, message, lost: false }
 }
 
 /// Adds a face that could not be understood.

@@ -22,6 +22,8 @@ pub(super) struct Chain {
     pub source: chordal_brep::Source,
     /// It ends a period of the surface beyond its start.
     pub winds: bool,
+    /// It was put together anew: it may meet others, or itself, in its vertices.
+    pub touches: bool,
 }
 
 impl Chain {
@@ -103,7 +105,7 @@ pub(super) fn closed(
         );
         warnings.push(Warning { source: trim.source, message, lost: false });
     }
-    Ok(Some(Chain { pieces, role: trim.role, source: trim.source, winds }))
+    Ok(Some(Chain { pieces, role: trim.role, source: trim.source, winds, touches: false }))
 }
 
 /// The distance of two points as a share of the domain.

@@ -4,6 +4,7 @@
 //! as curves on the surface. A piece along one side of a closed surface and the one along the other are one edge.
 
 use super::chain::Chain;
+use super::meet::ONE_PLACE;
 use super::{Piece, Scale};
 use chordal_brep::{Coedge, Edge, EdgeId, Loop, Part, Pcurve, Source, Vertex, VertexId};
 use chordal_nurbs::{Curve, Curve2, DVec2, DVec3, Frame, NurbsCurve3, NurbsSurface, Pole, Range, Surface};
@@ -25,6 +26,7 @@ pub(super) fn loops(part: &mut Part, surface: &Arc<Surface>, chains: Vec<Chain>,
         poles: surface.poles(),
         size: size(surface, &chains),
         border: Vec::new(),
+        touched: Vec::new(),
         seams: Vec::new(),
     };
     chains
@@ -57,6 +59,8 @@ struct Maker<'a> {
     size: f64,
     /// Vertices on sides of the domain that close or are poles: there different parameters may be one point.
     border: Vec<VertexId>,
+    /// Vertices of loops that meet in vertices, in the unit square.
+    touched: Vec<(DVec2, VertexId)>,
     seams: Vec<Seam>,
 }
 
@@ -85,10 +89,24 @@ impl Maker<'_> {
     fn chain(&mut self, chain: &Chain) -> Vec<Coedge> {
         let n = chain.pieces.len();
         let vertices: Vec<VertexId> =
-            chain.pieces.iter().map(|piece| self.vertex(piece.at(0.0), chain.source)).collect();
+            chain.pieces.iter().map(|piece| self.vertex_of(chain, piece.at(0.0))).collect();
         (0..n)
             .map(|i| self.coedge(&chain.pieces[i], [vertices[i], vertices[(i + 1) % n]], chain.source))
             .collect()
+    }
+
+    /// The vertex of a chain at a place; chains that meet there share it.
+    fn vertex_of(&mut self, chain: &Chain, p_uv: DVec2) -> VertexId {
+        if !chain.touches {
+            return self.vertex(p_uv, chain.source);
+        }
+        let place = self.scale.unit(p_uv);
+        if let Some((_, known)) = self.touched.iter().find(|(p, _)| p.distance(place) <= ONE_PLACE) {
+            return *known;
+        }
+        let id = self.vertex(p_uv, chain.source);
+        self.touched.push((place, id));
+        id
     }
 
     fn vertex(&mut self, p_uv: DVec2, source: Source) -> VertexId {

@@ -20,6 +20,7 @@ pub(super) fn loops(surface: &Surface) -> Vec<Chain> {
         role: Role::Outer,
         source: Source::default(),
         winds,
+        touches: false,
     };
     let poles = surface.poles();
     let is_pole = |k: usize| {

@@ -3,6 +3,7 @@
 use super::chain::Chain;
 use super::clip::{self, Outline};
 use super::natural;
+use super::untangle::{Untangled, untangled};
 use super::{Role, Scale};
 use crate::Winding;
 use chordal_nurbs::{DVec2, Surface};
@@ -16,18 +17,45 @@ const NO_AREA: f64 = 1e-14;
 /// Loops may leave the domain by this share of it: beyond, the surface is taken at its border.
 const BEYOND: f64 = 1e-3;
 
-/// The loops of each face: outer ones counter-clockwise, holes clockwise.
+/// The faces that chains bound.
+pub(super) struct Groups {
+    /// The loops of each face: outer ones counter-clockwise, holes clockwise.
+    pub faces: Vec<Vec<Chain>>,
+    /// Places where loops crossed or touched, where they were built anew for it.
+    pub untangled: Option<usize>,
+}
+
+/// Tells outer loops and holes apart, and puts them together to faces.
 ///
 /// # Errors
 /// A sentence, where the loops bound no region of the surface.
-pub(super) fn groups(
-    surface: &Surface,
-    chains: Vec<Chain>,
-    scale: &Scale,
-) -> Result<Vec<Vec<Chain>>, String> {
+pub(super) fn groups(surface: &Surface, chains: Vec<Chain>, scale: &Scale) -> Result<Groups, String> {
     let mut chains = chains;
     // By the even convention what no loop goes around belongs to the face.
     let whole = chains.iter().any(is_even) && !by_the_odd_one(&mut chains, scale);
+    let given = chains.clone();
+    let Untangled { chains, whole: unbounded, rebuilt } = untangled(chains, scale);
+    let whole = whole || unbounded;
+    if chains.is_empty() && !whole {
+        // Loops that run to and fro: the face has no area, and is left to the mesher as it is.
+        let no_area = |c: &Chain| c.role != Role::Hole && area(&c.polygon(scale)).abs() <= NO_AREA;
+        let flat: Vec<Chain> = given.into_iter().filter(no_area).collect();
+        if flat.is_empty() {
+            return Err("its trims leave nothing of the surface".into());
+        }
+        return Ok(Groups { faces: vec![flat], untangled: None });
+    }
+    let faces = nested(surface, chains, whole, scale)?;
+    Ok(Groups { faces, untangled: rebuilt })
+}
+
+/// Faces of loops that do not cross.
+fn nested(
+    surface: &Surface,
+    chains: Vec<Chain>,
+    whole: bool,
+    scale: &Scale,
+) -> Result<Vec<Vec<Chain>>, String> {
     let (winding, plain): (Vec<Chain>, Vec<Chain>) = chains.into_iter().partition(|chain| chain.winds);
     let plain = clip::to_domain(told_apart(plain, scale), scale)?;
     let mut nested = Vec::with_capacity(plain.len());
@@ -46,7 +74,7 @@ pub(super) fn groups(
         }
         nested.push(Nested { area: area(&polygon), polygon, chain, covers });
     }
-    nested.retain(|n| n.area.abs() > NO_AREA);
+    let flat: Vec<Chain> = nested.extract_if(.., |n| n.area.abs() <= NO_AREA).map(|n| n.chain).collect();
     let roles = roles(&nested);
     let mut outers: Vec<Group> = Vec::new();
     if !winding.is_empty() {
@@ -63,6 +91,10 @@ pub(super) fn groups(
         } else {
             holes.push(n);
         }
+    }
+    if outers.is_empty() && !whole && flat.iter().any(|chain| chain.role != Role::Hole) {
+        // Outer loops that run to and fro bound a face without area, not the whole surface.
+        return Ok(vec![flat]);
     }
     if whole || outers.is_empty() {
         // Holes alone are cut into the whole surface.

@@ -32,7 +32,7 @@ fn enclosed(trims: &[TrimLoop]) -> Result<f64, String> {
     let mut warnings = Vec::new();
     let chains =
         trims.iter().enumerate().filter_map(|(i, t)| chain::closed(t, i, &scale, &mut warnings).unwrap());
-    let groups = nest::groups(&surface, chains.collect(), &scale)?;
+    let groups = nest::groups(&surface, chains.collect(), &scale)?.faces;
     assert!(warnings.is_empty(), "{warnings:?}");
     let loops = groups.iter().flatten();
     for c in loops.clone() {
