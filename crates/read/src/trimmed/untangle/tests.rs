@@ -122,7 +122,10 @@ fn islands_stay_and_outer_loops_within_outer_loops_are_not_met_twice() {
     near(area(&[square(0.4, Role::Outer), square(0.2, Role::Outer)]), 0.64);
 }
 
-fn shapes() -> impl Strategy<Value = Vec<(bool, Vec<(f64, f64)>, f64, bool)>> {
+/// Whether it is a disc, corners or the center, radius, whether it is a hole.
+type Shape = (bool, Vec<(f64, f64)>, f64, bool);
+
+fn shapes() -> impl Strategy<Value = Vec<Shape>> {
     let corner = (0.02..0.98f64, 0.02..0.98f64);
     let shape =
         (prop::bool::weighted(0.3), prop::collection::vec(corner, 3..9), 0.05..0.4f64, prop::bool::ANY);
