@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the binary on the corpus and on its broken files, and compares with what the two INDEX.tsv files promise.
+"""Runs the binary on the corpus and on its broken files, and compares with what the two INDEX.tsv files
+promise.
 
     tools/check_corpus.py [--binary PROGRAM] [--corpus corpus] [--tolerance 0.1%] [--timeout 60]
 
@@ -31,9 +32,14 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         runner = Runner(args.binary, args.tolerance, args.timeout, Path(folder))
         for entry in good:
-            wrong += tell(entry["name"], judge_good(entry, *runner.run(args.corpus / f"{entry['name']}.step")))
+            wrong += tell(
+                entry["name"], judge_good(entry, *runner.run(args.corpus / f"{entry['name']}.step"))
+            )
         for entry in bad:
-            wrong += tell(f"bad/{entry['name']}", judge_bad(entry, *runner.run(args.corpus / "bad" / f"{entry['name']}.step")))
+            wrong += tell(
+                f"bad/{entry['name']}",
+                judge_bad(entry, *runner.run(args.corpus / "bad" / f"{entry['name']}.step")),
+            )
     print(f"{len(good)} files and {len(bad)} broken ones: {wrong} not as promised")
     return 1 if wrong else 0
 
@@ -52,9 +58,22 @@ class Runner:
         mesh, report = self.folder / "out.ply", self.folder / "out.json"
         for old in (mesh, report):
             old.unlink(missing_ok=True)
-        command = [self.binary, "mesh", model, "-o", mesh, "--tolerance", self.tolerance, "--report", report, "--quiet"]
+        command = [
+            self.binary,
+            "mesh",
+            model,
+            "-o",
+            mesh,
+            "--tolerance",
+            self.tolerance,
+            "--report",
+            report,
+            "--quiet",
+        ]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=self.timeout)
+            done = subprocess.run(
+                command, capture_output=True, text=True, errors="replace", timeout=self.timeout
+            )
         except subprocess.TimeoutExpired:
             return None, f"no result after {self.timeout:g} s", None
         written = json.loads(report.read_text()) if report.exists() else None
@@ -68,16 +87,23 @@ def judge_good(entry: dict[str, str], code: int | None, said: str, report: dict 
     if int(entry["faces"]) == 0:
         return [] if code in (0, 1, 2) else [f"exit {code}: {said}"]
     if code != 0 or report is None:
-        reasons = [f"{f['id']} {f['kind']}: {f['reason']}" for f in report["faces"]["failed"]] if report else []
+        reasons = (
+            [f"{f['id']} {f['kind']}: {f['reason']}" for f in report["faces"]["failed"]] if report else []
+        )
         return [f"exit {code}: {'; '.join(reasons[:3]) or said.splitlines()[-1:] or 'nothing said'}"]
     wrong = []
     if report["faces"]["total"] != int(entry["faces"]) and not report["passed_through"]:
         wrong.append(f"{report['faces']['total']} faces, not {entry['faces']}")
     if entry["closed"] == "yes" and not report["passed_through"]:
         shells = report["shells"]
-        if shells["closed_in_file"] < int(entry["solids"]) or shells["watertight"] != shells["closed_in_file"]:
-            wrong.append(f"{shells['watertight']} watertight of {shells['closed_in_file']} closed shells, "
-                         f"{entry['solids']} solids")
+        if (
+            shells["closed_in_file"] < int(entry["solids"])
+            or shells["watertight"] != shells["closed_in_file"]
+        ):
+            wrong.append(
+                f"{shells['watertight']} watertight of {shells['closed_in_file']} closed shells, "
+                f"{entry['solids']} solids"
+            )
     if report["proven_error"] is not None and report["proven_error"] > report["options"]["tolerance"]:
         wrong.append("proven error over the tolerance")
     return wrong
@@ -89,7 +115,9 @@ def judge_bad(entry: dict[str, str], code: int | None, said: str, report: dict |
         wrong.append(f"exit {code}, not {entry['exit']}: {said[:200]}")
     if "panicked" in said or "RUST_BACKTRACE" in said:
         wrong.append(f"a panic: {said[:200]}")
-    everything = said + json.dumps({k: v for k, v in (report or {}).items() if k in ("warnings", "undone", "faces")})
+    everything = said + json.dumps(
+        {k: v for k, v in (report or {}).items() if k in ("warnings", "undone", "faces")}
+    )
     if code is not None and entry["phrase"].lower() not in everything.lower():
         wrong.append(f"nothing said of `{entry['phrase']}`: {said[:200]}")
     return wrong

@@ -3,8 +3,8 @@
 
     tools/check_docs.py [FOLDER]
 
-Every relative link and picture must lead to a file, every `#anchor` to a heading, and no line may be wider than 110
-columns. Prints one line for each fault and exits with 1 if there is one.
+Every relative link and picture must lead to a file, every `#anchor` to a heading, and no line may be wider
+than 110 columns. Prints one line for each fault and exits with 1 if there is one.
 """
 
 import argparse
@@ -20,14 +20,28 @@ FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("folder", type=Path, nargs="?", default=Path(__file__).resolve().parent.parent)
     folder = parser.parse_args().folder
-    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=folder, capture_output=True,
-                            text=True, check=True).stdout.split()
+    listed = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard", "*.md"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
     files = [folder / name for name in listed if (folder / name).exists()]
-    faults = [f"{file.relative_to(folder)}{fault}" for file in files for fault in wide_lines(file) + broken_links(file)]
-    print("\n".join(faults) or f"{len(files)} documents: links lead somewhere, lines are at most {COLUMNS} columns wide")
+    faults = [
+        f"{file.relative_to(folder)}{fault}"
+        for file in files
+        for fault in wide_lines(file) + broken_links(file)
+    ]
+    print(
+        "\n".join(faults)
+        or f"{len(files)} documents: links lead somewhere, lines are at most {COLUMNS} columns wide"
+    )
     return 1 if faults else 0
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the pictures of docs/concepts.md as SVG files. Needs Python only.
 
-    tools/draw_concepts.py [-o docs/pictures]
+tools/draw_concepts.py [-o docs/pictures]
 """
 
 from __future__ import annotations
@@ -24,31 +24,45 @@ class Drawing:
         self.size = (width, height)
         self.shapes: list[str] = []
 
-    def line(self, points: Iterable[Point], color: str, width: float = 2, fill: str = "none", dash: str = "") -> None:
+    def line(
+        self, points: Iterable[Point], color: str, width: float = 2, fill: str = "none", dash: str = ""
+    ) -> None:
         path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
         dashed = f' stroke-dasharray="{dash}"' if dash else ""
-        self.shapes.append(f'<polyline points="{path}" fill="{fill}" stroke="{color}" stroke-width="{width}"'
-                           f' stroke-linejoin="round"{dashed}/>')
+        self.shapes.append(
+            f'<polyline points="{path}" fill="{fill}" stroke="{color}" stroke-width="{width}"'
+            f' stroke-linejoin="round"{dashed}/>'
+        )
 
     def dots(self, points: Iterable[Point], color: str, radius: float = 3.5) -> None:
         self.shapes += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="{color}"/>' for x, y in points]
 
     def text(self, at: Point, words: str, color: str = TEXT, anchor: str = "start") -> None:
-        self.shapes.append(f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" fill="{color}" text-anchor="{anchor}">{words}</text>')
+        self.shapes.append(
+            f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" fill="{color}" text-anchor="{anchor}">{words}</text>'
+        )
 
     def arrow(self, start: Point, end: Point) -> None:
         """A line with a head at both ends: a distance."""
-        self.shapes.append(f'<line x1="{start[0]:.1f}" y1="{start[1]:.1f}" x2="{end[0]:.1f}" y2="{end[1]:.1f}"'
-                           f' stroke="{MARK}" stroke-width="1.3" marker-start="url(#head)" marker-end="url(#head)"/>')
+        self.shapes.append(
+            f'<line x1="{start[0]:.1f}" y1="{start[1]:.1f}" x2="{end[0]:.1f}" y2="{end[1]:.1f}"'
+            f' stroke="{MARK}" stroke-width="1.3" marker-start="url(#head)" marker-end="url(#head)"/>'
+        )
 
     def write(self, path: Path) -> None:
         width, height = self.size
-        head = ('<marker id="head" orient="auto-start-reverse" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7"'
-                f' markerHeight="7"><path d="M0 0 L8 4 L0 8 z" fill="{MARK}"/></marker>')
-        path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}"'
-                        f' height="{height}" font-family="sans-serif" font-size="13">\n<defs>{head}</defs>\n'
-                        f'<rect width="{width}" height="{height}" fill="white"/>\n' + "\n".join(self.shapes)
-                        + "\n</svg>\n", encoding="utf-8")
+        head = (
+            '<marker id="head" orient="auto-start-reverse" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7"'
+            f' markerHeight="7"><path d="M0 0 L8 4 L0 8 z" fill="{MARK}"/></marker>'
+        )
+        path.write_text(
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}"'
+            f' height="{height}" font-family="sans-serif" font-size="13">\n<defs>{head}</defs>\n'
+            f'<rect width="{width}" height="{height}" fill="white"/>\n'
+            + "\n".join(self.shapes)
+            + "\n</svg>\n",
+            encoding="utf-8",
+        )
 
 
 def curve(of: Callable[[float], Point], start: float, end: float, steps: int = 80) -> list[Point]:
@@ -96,7 +110,9 @@ def gap() -> Drawing:
     drawing.arrow(edge, left[-1])
     drawing.arrow(edge, right[0])
     drawing.text((320, 182), "gap: the edge of the file lies off both surfaces", anchor="middle")
-    drawing.text((320, 204), "the mesh stays closed, because both faces use the vertex on the edge", MARK, "middle")
+    drawing.text(
+        (320, 204), "the mesh stays closed, because both faces use the vertex on the edge", MARK, "middle"
+    )
     drawing.text((80, 45), "face 1", EXACT)
     drawing.text((530, 75), "face 2", EXACT)
     drawing.text((320, 100), "edge of the file", MESH, "middle")
@@ -106,9 +122,13 @@ def gap() -> Drawing:
 def shells() -> Drawing:
     """Closed, open by design, leaking: three boxes in projection."""
     drawing = Drawing(640, 230)
-    for index, (title, reason) in enumerate((("closed", "every edge has two triangles"),
-                                             ("open by design", "the file holds a sheet"),
-                                             ("leaking", "a face of a solid failed"))):
+    for index, (title, reason) in enumerate(
+        (
+            ("closed", "every edge has two triangles"),
+            ("open by design", "the file holds a sheet"),
+            ("leaking", "a face of a solid failed"),
+        )
+    ):
         x = 110 + 210 * index
         top = [(x - 60, 60), (x + 20, 40), (x + 70, 70), (x - 10, 92)]
         front = [top[0], top[3], (x - 10, 172), (x - 60, 138)]
@@ -148,8 +168,11 @@ def trimmed_face() -> Drawing:
         return 350 + 230 * u + 30 * v, 95 + 120 * v - 60 * math.sin(math.pi * u)
 
     def lifted(points: list[Point]) -> list[Point]:
-        dense = [(a[0] + (b[0] - a[0]) * i / 20, a[1] + (b[1] - a[1]) * i / 20)
-                 for a, b in zip(points, points[1:]) for i in range(21)]
+        dense = [
+            (a[0] + (b[0] - a[0]) * i / 20, a[1] + (b[1] - a[1]) * i / 20)
+            for a, b in zip(points, points[1:])
+            for i in range(21)
+        ]
         return [lift(p) for p in dense]
 
     drawing.line(lifted([(30, 50), (280, 50), (280, 220), (30, 220), (30, 50)]), MARK, 1, dash="4 4")
@@ -162,8 +185,12 @@ def trimmed_face() -> Drawing:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).resolve().parent.parent / "docs" / "pictures")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, default=Path(__file__).resolve().parent.parent / "docs" / "pictures"
+    )
     folder = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
     for draw in (chordal_error, gap, shells, trimmed_face):

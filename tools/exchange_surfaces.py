@@ -1,7 +1,8 @@
 """The surfaces of scene, OBJ, JSON and 3DM files, read anew and given to another kernel.
 
-Small readers of their own, no code of Chordal's: what they give are surfaces and curves of OpenCASCADE made of the file's
-numbers, and which parameters the trims keep. 3DM archives go through rhino3dm, which tells surfaces and edges but no trims.
+Small readers of their own, no code of Chordal's: what they give are surfaces and curves of OpenCASCADE made
+of the file's numbers, and which parameters the trims keep. 3DM archives go through rhino3dm, which tells
+surfaces and edges but no trims.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class Patch:
     outer: list[list[Curve]] = field(default_factory=list)
     holes: list[list[Curve]] = field(default_factory=list)
 
-    def moved(self, matrix: np.ndarray) -> "Patch":
+    def moved(self, matrix: np.ndarray) -> Patch:
         net = self.net.copy()
         net[..., :3] = net[..., :3] @ matrix[:3, :3].T + matrix[:3, 3]
         return Patch(self.degree, self.knots, net, self.outer, self.holes)
@@ -97,8 +98,13 @@ def sampled(loop: list[Curve], steps: int = 3000) -> np.ndarray:
     points = []
     for c in loop:
         made = curve(c)
-        breaks = sorted({made.FirstParameter(), made.LastParameter(),
-                         *(k for k in c.knots if made.FirstParameter() < k < made.LastParameter())})
+        breaks = sorted(
+            {
+                made.FirstParameter(),
+                made.LastParameter(),
+                *(k for k in c.knots if made.FirstParameter() < k < made.LastParameter()),
+            }
+        )
         each = max(8, steps // (len(loop) * (len(breaks) - 1)))
         for low, high in zip(breaks, breaks[1:]):
             points += [made.Value(low + (high - low) * k / each) for k in range(each + 1)]
@@ -137,7 +143,8 @@ def bezier_knots(parameters: list[float], degree: int) -> list[float]:
     return [parameters[0]] * (degree + 1) + inner + [parameters[-1]] * (degree + 1)
 
 
-# --- geomdl -------------------------------------------------------------------------------------------------------------
+# --- geomdl
+# -------------------------------------------------------------------------------------------------------------
 
 
 def geomdl(path: Path) -> list[Patch]:
@@ -158,10 +165,18 @@ def geomdl(path: Path) -> list[Patch]:
 
 def geomdl_loop(trim: dict) -> list[Curve]:
     if trim.get("type") == "freeform":
-        points = [tuple(p[:2]) for p in trim["points"]] if "points" in trim else [tuple(p[:2]) for p in trim["data"]]
+        points = (
+            [tuple(p[:2]) for p in trim["points"]]
+            if "points" in trim
+            else [tuple(p[:2]) for p in trim["data"]]
+        )
         if points[0] != points[-1]:
             points.append(points[0])
-        return [Curve(1, [0.0, 0.0, 1.0, 1.0], [(*a, 1.0), (*b, 1.0)]) for a, b in zip(points, points[1:]) if a != b]
+        return [
+            Curve(1, [0.0, 0.0, 1.0, 1.0], [(*a, 1.0), (*b, 1.0)])
+            for a, b in zip(points, points[1:])
+            if a != b
+        ]
     if trim.get("type") == "container" or "control_points" not in trim:
         return chained([c for part in trim["data"] for c in geomdl_loop(part)])
     points = trim["control_points"]["points"]
@@ -174,7 +189,11 @@ def chained(pieces: list[Curve]) -> list[Curve]:
     rest, chain = pieces[1:], pieces[:1]
     while rest:
         end = np.array(chain[-1].points[-1][:2])
-        away = [(np.linalg.norm(np.array(c.points[k][:2]) - end), i, k) for i, c in enumerate(rest) for k in (0, -1)]
+        away = [
+            (np.linalg.norm(np.array(c.points[k][:2]) - end), i, k)
+            for i, c in enumerate(rest)
+            for k in (0, -1)
+        ]
         _, i, k = min(away)
         c = rest.pop(i)
         top = c.knots[0] + c.knots[-1]
@@ -182,7 +201,8 @@ def chained(pieces: list[Curve]) -> list[Curve]:
     return chain
 
 
-# --- OBJ ----------------------------------------------------------------------------------------------------------------
+# --- OBJ
+# ----------------------------------------------------------------------------------------------------------------
 
 
 CARDINAL = np.array([[0, 1, 0, 0], [-1 / 6, 1, 1 / 6, 0], [0, 1 / 6, 1, -1 / 6], [0, 0, 1, 0]])
@@ -223,7 +243,11 @@ def obj(path: Path) -> list[Patch]:
                 points = [plane[i - 1] if i > 0 else plane[i] for i in index]
                 points = [(p[0], p[1], p[2] if rational and len(p) > 2 else 1.0) for p in points]
                 knots = parm.get("u", [0.0, 1.0])
-                knots = bezier_knots(knots, degree[0]) if kind == "bezier" else knots[: len(points) + degree[0] + 1]
+                knots = (
+                    bezier_knots(knots, degree[0])
+                    if kind == "bezier"
+                    else knots[: len(points) + degree[0] + 1]
+                )
                 curves.append(Curve(degree[0], knots, points))
                 continue
             patches.append(obj_patch(places, args, parm, kind, rational, degree))
@@ -255,7 +279,8 @@ def obj_patch(places, args, parm, kind, rational, degree) -> Patch:
     raise Unreadable(f"cstype {kind}")
 
 
-# --- Inventor, VRML, X3D ------------------------------------------------------------------------------------------------
+# --- Inventor, VRML, X3D
+# ------------------------------------------------------------------------------------------------
 
 
 class Node(dict):
@@ -335,8 +360,10 @@ class Parser:
             elif self.starts_node():
                 values.append(self.node())
             else:
-                while self.peek() not in ("}", "") and not self.starts_node() and (
-                    not values or not self.peek()[:1].isalpha()
+                while (
+                    self.peek() not in ("}", "")
+                    and not self.starts_node()
+                    and (not values or not self.peek()[:1].isalpha())
                 ):
                     values.append(self.next())
             node[key] = values
@@ -379,15 +406,24 @@ def placement(node: Node) -> np.ndarray:
     center, tilt = numbers(node, "center", [0, 0, 0]), numbers(node, "scaleOrientation", [0, 0, 1, 0])
     scale = np.diag([*numbers(node, "scale" if "scale" in node else "scaleFactor", [1, 1, 1]), 1.0])
     around = turn(tilt) @ scale @ np.linalg.inv(turn(tilt))
-    return shift(numbers(node, "translation", [0, 0, 0])) @ shift(center) @ turn(
-        numbers(node, "rotation", [0, 0, 1, 0])) @ around @ shift([-c for c in center])
+    return (
+        shift(numbers(node, "translation", [0, 0, 0]))
+        @ shift(center)
+        @ turn(numbers(node, "rotation", [0, 0, 1, 0]))
+        @ around
+        @ shift([-c for c in center])
+    )
 
 
 def walk(nodes: list, matrix: np.ndarray, state: dict, found: list[Patch]) -> None:
     for node in nodes:
         if not isinstance(node, Node):
             continue
-        if node.kind in ("NurbsPatchSurface", "NurbsTrimmedSurface") or node.kind == "NurbsSurface" and "uDimension" in node:
+        if (
+            node.kind in ("NurbsPatchSurface", "NurbsTrimmedSurface")
+            or node.kind == "NurbsSurface"
+            and "uDimension" in node
+        ):
             found.append(patch_of(node).moved(matrix))
         elif node.kind == "NurbsSurface":
             found.append(inventor_patch(node, state).moved(matrix))
@@ -427,7 +463,9 @@ def patch_of(node: Node) -> Patch:
     patch = Patch((order[0] - 1, order[1] - 1), tuple(knots), net)
     contours = [v for v in [*node.get("trimmingContour", []), *node.children] if isinstance(v, Node)]
     for contour in (c for c in contours if c.kind == "Contour2D"):
-        loop = [contour_curve(c) for c in [*contour.get("children", []), *contour.children] if isinstance(c, Node)]
+        loop = [
+            contour_curve(c) for c in [*contour.get("children", []), *contour.children] if isinstance(c, Node)
+        ]
         (patch.holes if patch.outer else patch.outer).append(loop)
     return patch
 
@@ -447,7 +485,11 @@ def inventor_patch(node: Node, state: dict) -> Patch:
     size = [int(node[k][0]) for k in ("numUControlPoints", "numVControlPoints")]
     knots = [numbers(node, k) for k in ("uKnotVector", "vKnotVector")]
     points = state["points"]
-    points = np.c_[points, np.ones(len(points))] if points.shape[1] == 3 else np.c_[points[:, :3] / points[:, 3:], points[:, 3:]]
+    points = (
+        np.c_[points, np.ones(len(points))]
+        if points.shape[1] == 3
+        else np.c_[points[:, :3] / points[:, 3:], points[:, 3:]]
+    )
     net = points[: size[0] * size[1]].reshape(size[1], size[0], 4).transpose(1, 0, 2)
     patch = Patch(tuple(len(k) - n - 1 for k, n in zip(knots, size)), tuple(knots), net)
     loops = state.get("loops", [])
@@ -471,7 +513,8 @@ def inventor_profile(node: Node, state: dict) -> None:
         loops.append([made])
 
 
-# --- 3DM ----------------------------------------------------------------------------------------------------------------
+# --- 3DM
+# ----------------------------------------------------------------------------------------------------------------
 
 
 def rhino(path: Path) -> tuple[list[Patch], list[np.ndarray]]:
@@ -479,7 +522,14 @@ def rhino(path: Path) -> tuple[list[Patch], list[np.ndarray]]:
     import rhino3dm
 
     archive = rhino3dm.File3dm.Read(str(path))
-    unit = {"Millimeters": 1.0, "None": 1.0, "Centimeters": 10.0, "Meters": 1000.0, "Inches": 25.4, "Feet": 304.8}
+    unit = {
+        "Millimeters": 1.0,
+        "None": 1.0,
+        "Centimeters": 10.0,
+        "Meters": 1000.0,
+        "Inches": 25.4,
+        "Feet": 304.8,
+    }
     scale = unit[str(archive.Settings.ModelUnitSystem).split(".")[-1]]
     patches, edges = [], []
     for thing in archive.Objects:
@@ -491,8 +541,12 @@ def rhino(path: Path) -> tuple[list[Patch], list[np.ndarray]]:
         for face in body.Faces:
             nurbs = face.UnderlyingSurface().ToNurbsSurface()
             rows, columns = nurbs.Points.CountU, nurbs.Points.CountV
-            net = np.array([[[p.X, p.Y, p.Z, p.W] for p in (nurbs.Points[i, j] for j in range(columns))]
-                            for i in range(rows)])
+            net = np.array(
+                [
+                    [[p.X, p.Y, p.Z, p.W] for p in (nurbs.Points[i, j] for j in range(columns))]
+                    for i in range(rows)
+                ]
+            )
             net[..., :3] *= scale / net[..., 3:]
             ku, kv = list(nurbs.KnotsU), list(nurbs.KnotsV)
             full = ([ku[0], *ku, ku[-1]], [kv[0], *kv, kv[-1]])

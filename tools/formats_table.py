@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Meshes every file of a folder of other formats than STEP, as a user gets them, and prints a table in Markdown.
+"""Meshes every file of a folder of other formats than STEP, as a user gets them, and prints a table in
+Markdown.
 
     tools/formats_table.py MODELS [--binary PROGRAM] [--out TABLE.md]
 
-MODELS has one folder per format: iges, brep, iv, x3d, obj, json, 3dm. Each file is meshed with the defaults and
-`--sew auto` at 0.1 % of its diagonal. The figures are those of the reports. MODELS/INDEX.tsv, if there is one, gives
-the number of faces that another kernel finds (columns kind, name, occ_faces).
+MODELS has one folder per format: iges, brep, iv, x3d, obj, json, 3dm. Each file is meshed with the defaults
+and `--sew auto` at 0.1 % of its diagonal. The figures are those of the reports. MODELS/INDEX.tsv, if there is
+one, gives the number of faces that another kernel finds (columns kind, name, occ_faces).
 """
 
 import csv
@@ -38,9 +39,17 @@ def row(name: str, expected: str, code: int, told: dict | None, last: str) -> st
     if told is None:
         return f"| {name} | | {expected} | | | | | | {code}: {last} |"
     shells, proven = told["shells"], told["proven_error"]
-    cells = [name, told["faces"]["total"], expected, told["triangles"], f"{told['options']['tolerance']:.3g}",
-             "none" if proven is None else f"{proven:.3g}", f"{told['max_gap']:.1e}",
-             f"{shells['watertight']} of {shells['closed_in_file']}", code if code == 0 else f"{code}: {'; '.join(told['undone'])}"]
+    cells = [
+        name,
+        told["faces"]["total"],
+        expected,
+        told["triangles"],
+        f"{told['options']['tolerance']:.3g}",
+        "none" if proven is None else f"{proven:.3g}",
+        f"{told['max_gap']:.1e}",
+        f"{shells['watertight']} of {shells['closed_in_file']}",
+        code if code == 0 else f"{code}: {'; '.join(told['undone'])}",
+    ]
     return "| " + " | ".join(map(str, cells)) + " |"
 
 
@@ -50,7 +59,17 @@ def main() -> None:
     add_binary(parser)
     parser.add_argument("--out", type=Path, metavar="TABLE.md", help="write the table here, too")
     args = parser.parse_args()
-    head = ["file", "faces", "in the index", "triangles", "tolerance, mm", "proven error, mm", "gap, mm", "watertight", "exit"]
+    head = [
+        "file",
+        "faces",
+        "in the index",
+        "triangles",
+        "tolerance, mm",
+        "proven error, mm",
+        "gap, mm",
+        "watertight",
+        "exit",
+    ]
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     print("\n".join(lines))
     expected = faces_of_index(args.models / "INDEX.tsv")
@@ -71,7 +90,9 @@ def faces_of_index(index: Path) -> dict[str, str]:
     if not index.exists():
         return {}
     with index.open(encoding="utf-8") as file:
-        return {f"{row['kind']}/{row['name']}": row["occ_faces"] for row in csv.DictReader(file, delimiter="\t")}
+        return {
+            f"{row['kind']}/{row['name']}": row["occ_faces"] for row in csv.DictReader(file, delimiter="\t")
+        }
 
 
 if __name__ == "__main__":

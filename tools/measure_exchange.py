@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""Files that are not STEP: what sewing made of them, and how far the meshes are from the surfaces of another kernel.
+"""Files that are not STEP: what sewing made of them, and how far the meshes are from the surfaces of another
+kernel.
 
     tools/measure_exchange.py MODELS --verify VERIFIER.py [--binary PROGRAM] [--only NAME …] [--out TABLE.md]
 
-MODELS holds one folder per format (iges, brep, iv, x3d, obj, json, 3dm). Each file is meshed at 0.1 % of its diagonal with
-`--sew auto`. The reference is never our own reader's. OpenCASCADE reads IGES and BREP, and the verifier (`--verify` of `measure_models.py`) samples
-both directions. `exchange_surfaces.py` reads scenes, OBJ, JSON and, with rhino3dm, 3DM anew, and OpenCASCADE evaluates: samples of
-the surfaces within their trims to the mesh, and corners, middles of edges and centroids of the mesh to the trimmed surfaces. Of 3DM
-archives trims are not to be had: the mesh is measured to the whole surfaces, and points along the archive's edges to the mesh.
+MODELS holds one folder per format (iges, brep, iv, x3d, obj, json, 3dm). Each file is meshed at 0.1 % of its
+diagonal with `--sew auto`. The reference is never our own reader's. OpenCASCADE reads IGES and BREP, and the
+verifier (`--verify` of `measure_models.py`) samples both directions. `exchange_surfaces.py` reads scenes,
+OBJ, JSON and, with rhino3dm, 3DM anew, and OpenCASCADE evaluates: samples of the surfaces within their trims
+to the mesh, and corners, middles of edges and centroids of the mesh to the trimmed surfaces. Of 3DM archives
+trims are not to be had: the mesh is measured to the whole surfaces, and points along the archive's edges to
+the mesh.
 
-*measured* is compared with tolerance + gap, the gap being the larger of our report's and of the other kernel's (its edges off its
-surfaces; sewing's largest move is within ours).
+*measured* is compared with tolerance + gap, the gap being the larger of our report's and of the other
+kernel's (its edges off its surfaces; sewing's largest move is within ours).
 """
 
 from __future__ import annotations
@@ -41,7 +44,6 @@ SEEDS = 48000
 
 def child(verifier: str, path: Path, mesh: str, report: Path) -> dict:
     import numpy as np
-
     from measuring import load_verifier
 
     verify = load_verifier(verifier)
@@ -54,10 +56,18 @@ def child(verifier: str, path: Path, mesh: str, report: Path) -> dict:
     points, faces = verify.load_mesh(mesh)
     result = verify.verify(reference, points, faces, told["options"]["tolerance"] + told["max_gap"], 40000)
     gap = max(reference.edge_gap, 0.0)
-    return {"to_mesh": result["s2m"]["max"], "to_surface": result["m2s"]["max"], "gap": gap, "diagonal": reference.diag,
-            "faces": len(reference.faces), "worst": result["s2m"]["worst_point"], "worst2": result["m2s"]["worst_point"],
-            "area": result["area_rel_err"], "missing": result["faces"]["missing"],
-            "size": float(np.abs(points).max())}
+    return {
+        "to_mesh": result["s2m"]["max"],
+        "to_surface": result["m2s"]["max"],
+        "gap": gap,
+        "diagonal": reference.diag,
+        "faces": len(reference.faces),
+        "worst": result["s2m"]["worst_point"],
+        "worst2": result["m2s"]["worst_point"],
+        "area": result["area_rel_err"],
+        "missing": result["faces"]["missing"],
+        "size": float(np.abs(points).max()),
+    }
 
 
 def read_shape(path: Path):
@@ -99,7 +109,12 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
     for patch in patches:
         face = verify.FaceRef(verify.TD(BRepBuilderAPI_MakeFace(exchange.surface(patch), 1e-9).Face()))
         face.ax = None
-        face.uv = face.ad.FirstUParameter(), face.ad.LastUParameter(), face.ad.FirstVParameter(), face.ad.LastVParameter()
+        face.uv = (
+            face.ad.FirstUParameter(),
+            face.ad.LastUParameter(),
+            face.ad.FirstVParameter(),
+            face.ad.LastVParameter(),
+        )
         low, high = np.array(face.uv[::2]), np.array(face.uv[1::2])
         loops = tuple([exchange.sampled(loop) for loop in part] for part in (patch.outer, patch.holes))
         rims = [part for role in loops for loop in role for part in rim(face, loop, low, high)]
@@ -113,7 +128,9 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
             samples.append(face.d0(uv[exchange.inside(patch, loops, uv)]))
         # Far from its net no point is nearest to a patch.
         net = patch.net[..., :3]
-        away = np.linalg.norm(np.maximum(0, np.maximum(net.min((0, 1)) - probes, probes - net.max((0, 1)))), axis=1)
+        away = np.linalg.norm(
+            np.maximum(0, np.maximum(net.min((0, 1)) - probes, probes - net.max((0, 1)))), axis=1
+        )
         near = np.flatnonzero(away < np.minimum(best, diagonal))
         if not len(near):
             continue
@@ -130,8 +147,8 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
             best[todo] = np.minimum(best[todo], d)
     samples = np.concatenate(samples) if samples else np.zeros((0, 3))
     off = distance(samples)[0]
-    # The projection may end beside the nearest point: what looks too far is looked for again, all at once from more places, and
-    # what is left one by one, the worst first.
+    # The projection may end beside the nearest point: what looks too far is looked for again, all at once
+    # from more places, and what is left one by one, the worst first.
     for body in bodies:
         from_more_places(verify, exchange, body, probes, best, 0.99 * tolerance)
     deadline = time.monotonic() + PATIENCE
@@ -140,13 +157,21 @@ def measure_patches(verify, path: Path, mesh: str, tolerance: float) -> dict:
             break
         best[i] = closer(verify, exchange, bodies, probes[i], best[i], 0.99 * tolerance)
     worst = int(best.argmax())
-    return {"to_mesh": float(off.max()), "to_surface": float(best.max()), "gap": 0.0, "diagonal": diagonal,
-            "faces": len(patches), "worst": samples[off.argmax()].tolist(), "worst2": probes[worst].tolist(),
-            "size": float(np.abs(points).max())}
+    return {
+        "to_mesh": float(off.max()),
+        "to_surface": float(best.max()),
+        "gap": 0.0,
+        "diagonal": diagonal,
+        "faces": len(patches),
+        "worst": samples[off.argmax()].tolist(),
+        "worst2": probes[worst].tolist(),
+        "size": float(np.abs(points).max()),
+    }
 
 
 def from_more_places(verify, exchange, body: list, probes, best, enough: float) -> None:
-    """Lowers the distances of all points that look too far from one surface, by projections from several places near each."""
+    """Lowers the distances of all points that look too far from one surface, by projections from several
+    places near each."""
     import numpy as np
 
     face, patch, loops, border, least, most, _ = body
@@ -160,6 +185,7 @@ def from_more_places(verify, exchange, body: list, probes, best, enough: float) 
     seeds = seeds[((seeds > low) & (seeds < high)).all(1)]
     tree = verify.cKDTree(face.d0(seeds))
     starts = list(seeds[tree.query(probes[todo], k=PLACES)[1]].transpose(1, 0, 2))
+    ended = starts[0]
     for start in [*starts, None, None]:
         # What ended on a side goes on from the opposite one: the surface may be closed there.
         start = across(face, ended) if start is None else start
@@ -222,19 +248,23 @@ def closer(verify, exchange, bodies: list, p, best: float, enough: float) -> flo
 
 
 def descended(face, p, start, low, high) -> tuple:
-    """The nearest place by a simplex from one place: lattices get stuck where one parameter hardly moves the point, at poles."""
+    """The nearest place by a simplex from one place: lattices get stuck where one parameter hardly moves the
+    point, at poles."""
     import numpy as np
     from scipy.optimize import minimize
 
     off = lambda uv: float(np.linalg.norm(face.d0(np.clip(uv, low, high)[None])[0] - p))
     step = FINE**-0.5 * (high - low)
     simplex = [start, start + [step[0], 0], start + [0, step[1]]]
-    found = minimize(off, start, method="Nelder-Mead", options={"initial_simplex": simplex, "xatol": 1e-12, "fatol": 1e-12})
+    found = minimize(
+        off, start, method="Nelder-Mead", options={"initial_simplex": simplex, "xatol": 1e-12, "fatol": 1e-12}
+    )
     return np.clip(found.x, low, high), found.fun
 
 
 def rim(face, loop, low, high) -> list:
-    """The stretches of a trim within the surface, on the surface; where it leaves the domain, up to its border."""
+    """The stretches of a trim within the surface, on the surface; where it leaves the domain, up to its
+    border."""
     import numpy as np
 
     held = ((loop >= low) & (loop <= high)).all(1)
@@ -302,10 +332,26 @@ def row(args, path: Path, folder: Path) -> str:
     parts = told["sewing"]
     nearest = [o["nearest"] for p in parts for o in p["open"] if o["nearest"] is not None]
     tolerance, gap = told["options"]["tolerance"], told["max_gap"]
-    cells = [name, told["faces"]["total"], sum(p["open_before"] for p in parts), sum(p["open_after"] for p in parts),
-             f"{max((p['largest_move'] for p in parts), default=0.0):.1e}", f"{min(nearest):.1e}" if nearest else "",
-             f"{told['shells']['watertight']} of {told['shells']['closed_in_file']}", f"{tolerance:.3g}", f"{gap:.1e}"]
-    command = [sys.executable, __file__, "--child", args.verify, str(path), str(folder / "mesh.ply"), str(folder / "report.json")]
+    cells = [
+        name,
+        told["faces"]["total"],
+        sum(p["open_before"] for p in parts),
+        sum(p["open_after"] for p in parts),
+        f"{max((p['largest_move'] for p in parts), default=0.0):.1e}",
+        f"{min(nearest):.1e}" if nearest else "",
+        f"{told['shells']['watertight']} of {told['shells']['closed_in_file']}",
+        f"{tolerance:.3g}",
+        f"{gap:.1e}",
+    ]
+    command = [
+        sys.executable,
+        __file__,
+        "--child",
+        args.verify,
+        str(path),
+        str(folder / "mesh.ply"),
+        str(folder / "report.json"),
+    ]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT)
         found = json.loads(done.stdout.strip().splitlines()[-1])
@@ -337,8 +383,11 @@ def main() -> None:
     args = parser.parse_args()
     if args.verify is None:
         parser.error("--verify is needed")
-    lines = ["| file | faces | open before | open after | largest move | nearest opening | watertight | tolerance | gap | surface → mesh"
-             " | mesh → surface | other kernel's gap | within tolerance + gap |", "|" + "---|" * 13]
+    lines = [
+        "| file | faces | open before | open after | largest move | nearest opening | watertight | tolerance | gap | surface → mesh"
+        " | mesh → surface | other kernel's gap | within tolerance + gap |",
+        "|" + "---|" * 13,
+    ]
     print("\n".join(lines))
     with tempfile.TemporaryDirectory() as folder:
         for kind in FOLDERS:

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Meshes every STEP file of a folder at each tolerance, measures the meshes independently, and writes one table.
+"""Meshes every STEP file of a folder at each tolerance, measures the meshes independently, and writes one
+table.
 
     tools/measure_models.py MODELS [--verify VERIFIER.py] [--only PATTERN] [--skip PATTERN] [--binary PROGRAM]
                             [--tolerances 0.1% 0.01%] [--angle 20deg] [--jobs 2] [--out out/models]
                             [--results out/tables/models] [--reuse]
 
-Meshes (PLY) and reports (JSON) go to --out, the table to RESULTS.md and RESULTS.tsv. Without --verify nothing is
-measured, and those columns stay empty. --reuse takes meshes and measurements that are in --out already. The legend is
-in the table; tools/README.md explains how it is measured.
+Meshes (PLY) and reports (JSON) go to --out, the table to RESULTS.md and RESULTS.tsv. Without --verify nothing
+is measured, and those columns stay empty. --reuse takes meshes and measurements that are in --out already.
+The legend is in the table; tools/README.md explains how it is measured.
 """
 
 from __future__ import annotations
@@ -60,16 +61,31 @@ class Meshing:
 
 def main() -> int:
     args = arguments()
-    settings = Settings(args.binary, args.verify, args.out, args.tolerances, args.angle, args.timeout,
-                        args.verify_timeout, args.threads, args.reuse)
+    settings = Settings(
+        args.binary,
+        args.verify,
+        args.out,
+        args.tolerances,
+        args.angle,
+        args.timeout,
+        args.verify_timeout,
+        args.threads,
+        args.reuse,
+    )
     settings.out.mkdir(parents=True, exist_ok=True)
     expected = expected_faces(args.models)
-    models = sorted(p for p in args.models.iterdir() if p.suffix.lower() in SUFFIXES
-                    and any(fnmatch.fnmatch(p.name, pattern) for pattern in args.only)
-                    and not any(fnmatch.fnmatch(p.name, pattern) for pattern in args.skip))
+    models = sorted(
+        p
+        for p in args.models.iterdir()
+        if p.suffix.lower() in SUFFIXES
+        and any(fnmatch.fnmatch(p.name, pattern) for pattern in args.only)
+        and not any(fnmatch.fnmatch(p.name, pattern) for pattern in args.skip)
+    )
     models.sort(key=lambda p: -p.stat().st_size)
     with ThreadPoolExecutor(args.jobs) as pool:
-        rows = [row for found in pool.map(lambda m: measure_model(m, settings, expected), models) for row in found]
+        rows = [
+            row for found in pool.map(lambda m: measure_model(m, settings, expected), models) for row in found
+        ]
     rows.sort(key=lambda r: (settings.tolerances.index(r.tolerance), r.model.lower()))
     write_tables(rows, args.results, describe(args, settings))
     failed = sum(bool(row.broken()) for row in rows)
@@ -103,7 +119,10 @@ def describe(args: argparse.Namespace, settings: Settings) -> str:
 
 def expected_faces(models: Path) -> dict[str, int]:
     """Faces of each file as the index of the models counts them, every instance."""
-    for index, name, faces in ((models.parent / "INDEX.tsv", "name", "occ_faces"), (models / "INDEX.tsv", "name", "faces")):
+    for index, name, faces in (
+        (models.parent / "INDEX.tsv", "name", "occ_faces"),
+        (models / "INDEX.tsv", "name", "faces"),
+    ):
         if index.exists():
             lines = index.read_text(encoding="utf-8").splitlines()
             head = lines[0].split("\t")
@@ -134,11 +153,28 @@ def mesh_model(model: Path, tolerance: str, settings: Settings) -> Meshing:
         return Meshing(model, tolerance, mesh, report, **json.loads(log.read_text()))
     for old in (mesh, report, log, settings.out / f"{model.name}.verify.json"):
         old.unlink(missing_ok=True)
-    command = [settings.binary, "mesh", model, "-o", mesh, "--tolerance", tolerance, "--angle", settings.angle,
-               "--jobs", str(settings.threads), "--report", report, "--quiet", *settings.extra]
+    command = [
+        settings.binary,
+        "mesh",
+        model,
+        "-o",
+        mesh,
+        "--tolerance",
+        tolerance,
+        "--angle",
+        settings.angle,
+        "--jobs",
+        str(settings.threads),
+        "--report",
+        report,
+        "--quiet",
+        *settings.extra,
+    ]
     started = time.perf_counter()
     try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=settings.mesh_timeout)
+        done = subprocess.run(
+            command, capture_output=True, text=True, errors="replace", timeout=settings.mesh_timeout
+        )
         code, message = done.returncode, (done.stderr.strip().splitlines() or [""])[-1]
     except subprocess.TimeoutExpired:
         code, message = None, f"no result after {settings.mesh_timeout:g} s"
@@ -155,17 +191,31 @@ def measure_meshes(model: Path, runs: list[Meshing], settings: Settings) -> dict
     done = [r for r in runs if r.exit in (0, 1) and r.mesh.exists() and r.report.exists()]
     if not done:
         return {}
-    command = [sys.executable, HERE / "measure_one.py", settings.verifier, model, *(f"{r.mesh}={r.report}" for r in done)]
+    command = [
+        sys.executable,
+        HERE / "measure_one.py",
+        settings.verifier,
+        model,
+        *(f"{r.mesh}={r.report}" for r in done),
+    ]
     environment = os.environ | {"NUMBA_NUM_THREADS": "1", "NUMBA_CACHE_DIR": str(settings.out / ".numba")}
     try:
-        result = subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment,
-                                timeout=settings.verify_timeout)
+        result = subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            env=environment,
+            timeout=settings.verify_timeout,
+        )
         lines = result.stdout.strip().splitlines()
         found = json.loads(lines[-1]) if result.returncode == 0 else None
         error = (result.stderr.strip().splitlines() or [f"ended with {result.returncode}"])[-1]
     except subprocess.TimeoutExpired:
         found, error = None, f"not measured within {settings.verify_timeout:g} s"
-    answers = {r["mesh"]: r for r in found} if found is not None else {str(r.mesh): {"error": error} for r in done}
+    answers = (
+        {r["mesh"]: r for r in found} if found is not None else {str(r.mesh): {"error": error} for r in done}
+    )
     kept.write_text(json.dumps(answers))
     return answers
 

@@ -3,7 +3,8 @@
 
     tools/measure_one.py VERIFIER.py MODEL MESH=REPORT.json [MESH=REPORT.json ...]
 
-A process of its own, because the other kernel may crash or hang on a model. tools/measure_models.py starts it.
+A process of its own, because the other kernel may crash or hang on a model. tools/measure_models.py starts
+it.
 """
 
 from __future__ import annotations

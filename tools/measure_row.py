@@ -84,11 +84,14 @@ class Row:
             "faces": None if self.faces_index is None else self.faces + self.faces_split == self.faces_index,
             "failed": self.failed == 0,
             "missing": None if self.missing is None else self.missing == 0,
-            "closed": self.open_edges == 0 and self.inconsistent_edges == 0
+            "closed": self.open_edges == 0
+            and self.inconsistent_edges == 0
             and self.shells_closed == self.shells_watertight,
             "measured": measured,
             "proven": proven,
-            "per_face": None if self.faces_over_bound is None else self.faces_over_bound == self.faces_over_by_pcurve,
+            "per_face": None
+            if self.faces_over_bound is None
+            else self.faces_over_bound == self.faces_over_by_pcurve,
         }
 
     def broken(self) -> list[str]:
@@ -123,8 +126,10 @@ def add_report(row: Row, report: dict) -> None:
     for f in faces["failed"]:
         row.notes.append(f"{f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}")
         row.reasons[f"{f['kind']}: {re.sub(r'[-#0-9.e+]*[0-9]', '…', f['reason'])}"] += f["instances"]
-    row.notes += [f"zero area: {f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}"
-                  for f in faces["zero_area"]]
+    row.notes += [
+        f"zero area: {f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}"
+        for f in faces["zero_area"]
+    ]
     row.notes += report["undone"]
 
 
@@ -145,9 +150,11 @@ def add_measured(row: Row, measured: dict) -> None:
         row.faces_compared = per_face["compared"]
         explain_faces(row, per_face["replaced"])
         row.faces_over_by_pcurve = per_face.get("explained", sum(b["explained"] for b in per_face["list"]))
-        row.notes += [f"over its bound: {b['id']} (the other kernel's face {b['face']}): measured {b['measured']:.4g}, "
-                      f"bound {b['bound']:.4g}; the file's pcurves are {b['pcurve_gap']:.4g} off their edges"
-                      for b in per_face["list"]]
+        row.notes += [
+            f"over its bound: {b['id']} (the other kernel's face {b['face']}): measured {b['measured']:.4g}, "
+            f"bound {b['bound']:.4g}; the file's pcurves are {b['pcurve_gap']:.4g} off their edges"
+            for b in per_face["list"]
+        ]
 
 
 def explain_faces(row: Row, replaced: dict) -> None:
@@ -156,4 +163,6 @@ def explain_faces(row: Row, replaced: dict) -> None:
     difference = theirs - sum(ours.values())
     if row.faces is not None and row.faces != row.faces_index and row.faces + difference == row.faces_index:
         row.faces_split = difference
-        row.notes.append(f"the index counts {difference} faces more: the other kernel made {theirs} of {', '.join(ours)}")
+        row.notes.append(
+            f"the index counts {difference} faces more: the other kernel made {theirs} of {', '.join(ours)}"
+        )

@@ -24,7 +24,9 @@ def tsv(rows: Sequence[Row]) -> str:
     lines = ["\t".join([*names, *(f"ok_{name}" for name in PROMISES)])]
     for row in rows:
         values = ["" if (v := getattr(row, name)) is None else str(v).replace("\t", " ") for name in names]
-        lines.append("\t".join([*values, *({True: "1", False: "0", None: ""}[k] for k in row.promises().values())]))
+        lines.append(
+            "\t".join([*values, *({True: "1", False: "0", None: ""}[k] for k in row.promises().values())])
+        )
     return "\n".join(lines) + "\n"
 
 
@@ -77,14 +79,18 @@ def markdown(rows: Sequence[Row], described: str) -> str:
     return "\n".join(parts) + "\n"
 
 
-LEGEND = """*proven*, *gap*, *edge gap*, *edge tol*, *s→m* and *m→s* are in units of the tolerance (given in mm).
-*index*: faces as the models' own index counts them. *bound*: the fewest triangles (`docs/report.md`), *ratio* over it.
-*gap*: how far vertices lie off their surfaces because the file is loose, ours; *edge gap* and *edge tol*: the same as the other
-kernel measures it, and the largest tolerance of an edge as it reads the file. *s→m*, *m→s*: measured by the
-independent verifier, surface to mesh and mesh to surface. *open*, *incons.*: edges of shells that the file calls closed, by
-provenance. *over bound*: faces measured over `proven_error + gap`; in brackets those where the file's pcurves are as far off
-their edges. *s*: wall seconds of the whole run. Then the promises: """ + "; ".join(
-    f"*{name}*: {meaning}" for name, meaning in PROMISES.items()) + ". ✓ kept, ✗ broken, · could not be judged."
+LEGEND = (
+    """*proven*, *gap*, *edge gap*, *edge tol*, *s→m* and *m→s* are in units of the tolerance (given in mm).
+    *index*: faces as the models' own index counts them. *bound*: the fewest triangles (`docs/report.md`),
+    *ratio* over it. *gap*: how far vertices lie off their surfaces because the file is loose, ours; *edge
+    gap* and *edge tol*: the same as the other kernel measures it, and the largest tolerance of an edge as it
+    reads the file. *s→m*, *m→s*: measured by the independent verifier, surface to mesh and mesh to surface.
+    *open*, *incons.*: edges of shells that the file calls closed, by provenance. *over bound*: faces measured
+    over `proven_error + gap`; in brackets those where the file's pcurves are as far off their edges. *s*:
+    wall seconds of the whole run. Then the promises:"""
+    + "; ".join(f"*{name}*: {meaning}" for name, meaning in PROMISES.items())
+    + ". ✓ kept, ✗ broken, · could not be judged."
+)
 
 
 def table(rows: Sequence[Row]) -> list[str]:
@@ -103,20 +109,24 @@ def totals(rows: Sequence[Row]) -> list[str]:
     bound = sum(r.lower_bound or 0 for r in meshed)
     triangles = sum(r.triangles for r in meshed if r.lower_bound)
     errors = [r.measured / r.tolerance_mm for r in meshed if r.measured and r.tolerance_mm]
-    lines = [f"- files: {len(rows)}, written: {len(meshed)}, exit 0: {sum(r.exit == 0 for r in rows)}",
-             f"- faces: {faces}, failed: {failed} ({100 * failed / max(faces, 1):.3f} %), "
-             f"of no area: {sum(r.zero_area for r in meshed)}",
-             f"- triangles: {triangles}, over the lower bound: {triangles / max(bound, 1):.3f} in the sum, "
-             f"{geometric([r.ratio for r in meshed if r.ratio]):.3f} in the geometric mean",
-             f"- measured error over tolerance: {geometric(errors):.3f} in the geometric mean, "
-             f"{max(errors, default=math.nan):.3f} at most",
-             f"- seconds: {sum(r.seconds for r in rows):.1f}"]
+    lines = [
+        f"- files: {len(rows)}, written: {len(meshed)}, exit 0: {sum(r.exit == 0 for r in rows)}",
+        f"- faces: {faces}, failed: {failed} ({100 * failed / max(faces, 1):.3f} %), "
+        f"of no area: {sum(r.zero_area for r in meshed)}",
+        f"- triangles: {triangles}, over the lower bound: {triangles / max(bound, 1):.3f} in the sum, "
+        f"{geometric([r.ratio for r in meshed if r.ratio]):.3f} in the geometric mean",
+        f"- measured error over tolerance: {geometric(errors):.3f} in the geometric mean, "
+        f"{max(errors, default=math.nan):.3f} at most",
+        f"- seconds: {sum(r.seconds for r in rows):.1f}",
+    ]
     reasons = sum((r.reasons for r in meshed), Counter())
     by_count = sorted(reasons.items(), key=lambda item: (-item[1], item[0]))
     lines[2:2] = [f"  - {count} × {reason}" for reason, count in by_count[:20]]
     for name, meaning in PROMISES.items():
         kept = [r.promises()[name] for r in rows]
-        lines.append(f"- {meaning}: kept {kept.count(True)}, broken {kept.count(False)}, not judged {kept.count(None)}")
+        lines.append(
+            f"- {meaning}: kept {kept.count(True)}, broken {kept.count(False)}, not judged {kept.count(None)}"
+        )
     return lines
 
 

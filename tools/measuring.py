@@ -1,20 +1,17 @@
 """Measures the meshes of one model with an independent verifier: what tools/measure_one.py runs.
 
-The verifier's reference is built once for all meshes of the model. Beside what the verifier says, the sampled distance
-of every face to the mesh is compared with what our report proves for that face: `proven_error + gap`.
+The verifier's reference is built once for all meshes of the model. Beside what the verifier says, the sampled
+distance of every face to the mesh is compared with what our report proves for that face: `proven_error +
+gap`.
 """
 
 from __future__ import annotations
 
 import importlib.util
-import json
-import sys
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
-
 from occ_reading import StepFile
 
 # Sampled distances carry the rounding of the other kernel's evaluators, relative to the size of the model.
@@ -22,9 +19,9 @@ ROUNDING = 1e-9
 
 
 def load_verifier(path: str) -> ModuleType:
-    """The verifier as a module, with four changes: the reader is kept, so are the distances of its samples, feet are found on
-    the inner part of a spindle torus and beyond the apex of a cone, and the other kernel's own search over the whole shape has
-    the last word on points that look too far."""
+    """The verifier as a module, with four changes: the reader is kept, so are the distances of its samples,
+    feet are found on the inner part of a spindle torus and beyond the apex of a cone, and the other kernel's
+    own search over the whole shape has the last word on points that look too far."""
     spec = importlib.util.spec_from_file_location("verify", path)
     verify = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(verify)
@@ -72,8 +69,8 @@ def whole_shape(verify: ModuleType, reference: Any, point: np.ndarray) -> float:
 
 
 def on_far_side(verify: ModuleType, face: Any) -> bool:
-    """Whether a face lies on the inner part of a spindle torus or on the cone's nappe beyond the apex: where the
-    signed distance from the axis, as a function of v, is negative."""
+    """Whether a face lies on the inner part of a spindle torus or on the cone's nappe beyond the apex: where
+    the signed distance from the axis, as a function of v, is negative."""
     middle = 0.5 * (face.uv[2] + face.uv[3])
     if face.typ == verify.GeomAbs_Torus:
         return face.par[0] + face.par[1] * np.cos(middle) < 0
@@ -112,7 +109,8 @@ def measure(verify: ModuleType, reference: Any, origins: list[str | None], mesh:
 
 
 def compare_faces(reference: Any, distance: np.ndarray, origins: list[str | None], report: dict) -> dict:
-    """Every face's largest sampled distance against its own bound, or the largest bound where its origin is unknown."""
+    """Every face's largest sampled distance against its own bound, or the largest bound where its origin is
+    unknown."""
     measured = np.zeros(len(reference.faces))
     np.maximum.at(measured, reference.F, distance)
     bounds, excused = bounds_by_entity(report)
@@ -131,17 +129,33 @@ def compare_faces(reference: Any, distance: np.ndarray, origins: list[str | None
         compared += 1
         if value > bound + slack:
             loose = pcurve_gap(reference, face)
-            broken.append({"face": face, "id": origin, "measured": float(value), "bound": bound, "pcurve_gap": loose,
-                           "explained": bool(value <= bound + loose + slack)})
+            broken.append(
+                {
+                    "face": face,
+                    "id": origin,
+                    "measured": float(value),
+                    "bound": bound,
+                    "pcurve_gap": loose,
+                    "explained": bool(value <= bound + loose + slack),
+                }
+            )
     broken.sort(key=lambda b: -b["measured"] / max(b["bound"], 1e-300))
     missing = [origins[f] for f in np.flatnonzero(measured > 3 * report["options"]["tolerance"])]
     explained = sum(b["explained"] for b in broken)
-    return {"compared": compared, "unmatched": unmatched, "broken": len(broken), "explained": explained,
-            "list": broken[:20], "over_3x": missing[:20], "replaced": replaced(origins, report)}
+    return {
+        "compared": compared,
+        "unmatched": unmatched,
+        "broken": len(broken),
+        "explained": explained,
+        "list": broken[:20],
+        "over_3x": missing[:20],
+        "replaced": replaced(origins, report),
+    }
 
 
 def pcurve_gap(reference: Any, face: int) -> float:
-    """How far the face's pcurves, lifted to its surface, lie from the 3D curves of its edges: what the file is loose by."""
+    """How far the face's pcurves, lifted to its surface, lie from the 3D curves of its edges: what the file
+    is loose by."""
     worst = 0.0
     for i in np.flatnonzero((reference.F == face) & (reference.E >= 0)):
         p = reference.edges[reference.E[i]][1].Value(float(reference.T[i]))
@@ -150,7 +164,8 @@ def pcurve_gap(reference: Any, face: int) -> float:
 
 
 def replaced(origins: list[str | None], report: dict) -> dict:
-    """Faces of ours that the other kernel did not keep as they are, and how many faces of unknown origin it has."""
+    """Faces of ours that the other kernel did not keep as they are, and how many faces of unknown origin it
+    has."""
     known = set(origins)
     lost = {face["id"]: face["instances"] for face in report["face_list"] if face["id"] not in known}
     return {"ours": lost, "theirs": origins.count(None)}

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Which faces OpenCASCADE itself leaves without triangles, and which have no area: to judge our failed faces by.
+"""Which faces OpenCASCADE itself leaves without triangles, and which have no area: to judge our failed faces
+by.
 
     tools/occ_faces.py MODEL [MODEL ...] [--deflection 0.1%] [--reports out/models]
 
-Prints one tab-separated line a face: model, entity, instances, what (unmeshed, zero area), area in mm², area over the
-square of the diagonal. With --reports it adds a line for each face that our report calls failed: `we fail` where
-OpenCASCADE fails too or the face has no area, `only we fail` where it does not.
+Prints one tab-separated line a face: model, entity, instances, what (unmeshed, zero area), area in mm², area
+over the square of the diagonal. With --reports it adds a line for each face that our report calls failed: `we
+fail` where OpenCASCADE fails too or the face has no area, `only we fail` where it does not.
 """
 
 from __future__ import annotations
@@ -21,12 +22,11 @@ from arguments import parser_of
 
 # The kernel is imported where it is used, so that --help needs none.
 if TYPE_CHECKING:
+    from occ_reading import StepFile
     from OCP.TopoDS import TopoDS_Face
 
-    from occ_reading import StepFile
-
-# A face has no area when its mean width (twice the area over the perimeter) is below this part of the diagonal: the
-# coordinates of a file seldom hold more digits.
+# A face has no area when its mean width (twice the area over the perimeter) is below this part of the
+# diagonal: the coordinates of a file seldom hold more digits.
 NO_WIDTH = 1e-7
 
 
@@ -39,11 +39,10 @@ class Finding:
 
 def examine(model: Path, deflection: str) -> tuple[Counter[Finding], float]:
     """Faces without triangles or area, with their numbers of instances; and the diagonal."""
+    from occ_reading import StepFile
     from OCP.BRep import BRep_Tool
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.TopLoc import TopLoc_Location
-
-    from occ_reading import StepFile
 
     file = StepFile(model)
     diagonal = diagonal_of(file)
@@ -100,19 +99,30 @@ def failed_by_us(reports: Path, model: Path) -> dict[str, str]:
 def main() -> int:
     parser = parser_of(__doc__)
     parser.add_argument("models", nargs="+", type=Path)
-    parser.add_argument("--deflection", default="0.1%", help="mm, or a percentage of the diagonal (default 0.1%%)")
+    parser.add_argument(
+        "--deflection", default="0.1%", help="mm, or a percentage of the diagonal (default 0.1%%)"
+    )
     parser.add_argument("--reports", type=Path, help="folder of our reports, as measure_models.py leaves it")
     args = parser.parse_args()
     only_we = 0
     for model in args.models:
         found, diagonal = examine(model, args.deflection)
         for finding, instances in found.items():
-            print(model.name, finding.entity, instances, finding.what, f"{finding.area:.6g}",
-                  f"{finding.area / diagonal**2:.3g}", sep="\t")
+            print(
+                model.name,
+                finding.entity,
+                instances,
+                finding.what,
+                f"{finding.area:.6g}",
+                f"{finding.area / diagonal**2:.3g}",
+                sep="\t",
+            )
         excused = {finding.entity for finding in found}
         for entity, reason in (failed_by_us(args.reports, model) if args.reports else {}).items():
             only_we += entity not in excused
-            print(model.name, entity, "", "we fail" if entity in excused else "only we fail", reason, sep="\t")
+            print(
+                model.name, entity, "", "we fail" if entity in excused else "only we fail", reason, sep="\t"
+            )
     return 1 if only_we else 0
 
 

@@ -43,7 +43,8 @@ class StepFile:
         """`#123` for every face of `faces`, None where the origin is not known."""
         session = self.reader.ChangeReader().WS()
         model, transfer = session.Model(), session.TransferReader()
-        # The binding's maps from entities do not work; the identity of the wrapped objects does while they are held.
+        # The binding's maps from entities do not work; the identity of the wrapped objects does while they
+        # are held.
         entities = [model.Value(i) for i in range(1, model.NbEntities() + 1)]
         ids = entity_ids(self.path)
         if len(ids) != len(entities):
@@ -63,7 +64,7 @@ class StepFile:
 def entity_ids(path: Path | str) -> list[str]:
     """The ids of the data section in the file's order, which is the order of OpenCASCADE's model."""
     text = Path(path).read_bytes().decode("latin-1")
-    data = text[text.find("DATA;"):]
+    data = text[text.find("DATA;") :]
     bare = re.sub(r"'(?:[^']|'')*'|/\*.*?\*/", "''", data, flags=re.S)
     return [f"#{int(n)}" for n in re.findall(r"#(\d+)\s*=", bare)]
 

@@ -24,7 +24,8 @@ MODELS = [
     "freecad_SOD_323.stp",
     "bearing.iges",
 ]
-# Table 2 of the document, Golf: conversion and approximation in seconds, edges; the 2D edges are those of Table 4.
+# Table 2 of the document, Golf: conversion and approximation in seconds, edges; the 2D edges are those of
+# Table 4.
 THEIRS = {
     "bezier2d": (1.2, 77.3, 824_791),
     "bezier3d-point": (23.9, 4.4, 178_475),
@@ -70,7 +71,10 @@ def surfaces_of(model):
 
 def edges_table(tables):
     out = ["## Trimming edges (Table 2)", ""]
-    out += ["Every face by itself, whole loops simplified, as in the document. CPU seconds: conversion, approximation.", ""]
+    out += [
+        "Every face by itself, whole loops simplified, as in the document. CPU seconds: conversion, approximation.",
+        "",
+    ]
     head = ["method"] + [m["model"] for m in tables] + ["document, Golf"]
     rows = []
     for method, (conversion, approximation, edges) in THEIRS.items():
@@ -95,14 +99,19 @@ def edges_table(tables):
     out += table(head, rows) + [""]
     crossed = ", ".join(f"{m['model']} {loops_of(m)['bezier3d']['crossings']}" for m in tables)
     left_out = ", ".join(f"{m['model']} {loops_of(m)['bezier3d']['left_out']}" for m in tables)
-    out += [f"Vertices that the sweep set where loops met in the plane of parameters: {crossed}. Uses of edges without a curve"]
+    out += [
+        f"Vertices that the sweep set where loops met in the plane of parameters: {crossed}. Uses of edges without a curve"
+    ]
     out += [f"in the plane of parameters: {left_out}.", ""]
     return out
 
 
 def surfaces_table(tables):
     out = ["## Surfaces (Table 3)", ""]
-    out += ["Triangles; CPU seconds for the whole mesh; milliseconds to evaluate all vertices, each by itself → with coherence.", ""]
+    out += [
+        "Triangles; CPU seconds for the whole mesh; milliseconds to evaluate all vertices, each by itself → with coherence.",
+        "",
+    ]
     keys = [k for k in surfaces_of(tables[0])]
     theirs = {
         ("quadtree", "bezier3d", "proven"): "1,511,056 183.6 → 175.2 s",
@@ -153,23 +162,54 @@ def ratios_table(tables):
     rows = []
     for name, a, b, theirs in [
         ("quadtree / kd, proven", ("quadtree", lifted, "proven"), ("kd-worst", lifted, "proven"), "1.9"),
-        ("quadtree / kd, estimated", ("quadtree", lifted, "estimated"), ("kd-worst", lifted, "estimated"), "2.2"),
-        ("whole system, triangles", ("quadtree", plane, "proven"), ("kd-worst", lifted, "estimated"),
-         "4.4 Golf, 19 console, 5.3 Beetle"),
+        (
+            "quadtree / kd, estimated",
+            ("quadtree", lifted, "estimated"),
+            ("kd-worst", lifted, "estimated"),
+            "2.2",
+        ),
+        (
+            "whole system, triangles",
+            ("quadtree", plane, "proven"),
+            ("kd-worst", lifted, "estimated"),
+            "4.4 Golf, 19 console, 5.3 Beetle",
+        ),
         ("kd proven / estimated", ("kd-worst", lifted, "proven"), ("kd-worst", lifted, "estimated"), "1.7"),
-        ("quadtree proven / estimated", ("quadtree", lifted, "proven"), ("quadtree", lifted, "estimated"), "1.5"),
-        ("kd-midpoint / kd-worst, proven", ("kd-midpoint", lifted, "proven"), ("kd-worst", lifted, "proven"), ""),
+        (
+            "quadtree proven / estimated",
+            ("quadtree", lifted, "proven"),
+            ("quadtree", lifted, "estimated"),
+            "1.5",
+        ),
+        (
+            "kd-midpoint / kd-worst, proven",
+            ("kd-midpoint", lifted, "proven"),
+            ("kd-worst", lifted, "proven"),
+            "",
+        ),
         ("kd-worst / default, proven", ("kd-worst", lifted, "proven"), ("default", own, "proven"), ""),
     ]:
         rows.append([name] + [ratio(count(m, *a), count(m, *b)) for m in tables] + [theirs])
     rows.append(
         ["edges in the mesh, 2D / 3D"]
-        + [ratio(count(m, "quadtree", plane, "proven", "edges"), count(m, "kd-worst", lifted, "estimated", "edges")) for m in tables]
+        + [
+            ratio(
+                count(m, "quadtree", plane, "proven", "edges"),
+                count(m, "kd-worst", lifted, "estimated", "edges"),
+            )
+            for m in tables
+        ]
         + ["5.5 Golf, 16.5 console, 7.5 Beetle"]
     )
     rows.append(
         ["evaluation, each / coherent (kd-worst, proven)"]
-        + [ratio(count(m, "kd-worst", lifted, "proven", "evaluation"), count(m, "kd-worst", lifted, "proven", "coherent")) for m in tables]
+        + [
+            ratio(
+                count(m, "kd-worst", lifted, "proven", "evaluation"),
+                count(m, "kd-worst", lifted, "proven", "coherent"),
+            )
+            for m in tables
+        ]
         + ["4 % of the whole time"]
     )
     return out + table(head, rows) + [""]
@@ -178,9 +218,13 @@ def ratios_table(tables):
 def main():
     parser = parser_of(__doc__)
     add_models(parser, "folder with the models, of any depth")
-    parser.add_argument("names", metavar="NAME", nargs="*", default=MODELS, help="files of MODELS [default: six public ones]")
+    parser.add_argument(
+        "names", metavar="NAME", nargs="*", default=MODELS, help="files of MODELS [default: six public ones]"
+    )
     add_binary(parser)
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/tables/paper_tables.md"))
+    parser.add_argument(
+        "-o", "--output", type=pathlib.Path, default=pathlib.Path("out/tables/paper_tables.md")
+    )
     parser.add_argument("--tolerance", default="0.1%")
     parser.add_argument("--json", help="keep the numbers here")
     args = parser.parse_args()
@@ -189,7 +233,11 @@ def main():
         pathlib.Path(args.json).write_text(json.dumps(tables, indent=1))
     models = ", ".join(f"{m['model']} ({m['faces']} faces, {m['tolerance']:.4g} mm)" for m in tables)
     out = ["# The tables of Balázs, Guthe, Klein 2004 on our models", ""]
-    out += [f"`paper_tables.py MODELS` at {args.tolerance}: {models}.", "One thread, shortest of three runs, without limit of angle, `--face-timeout 4`.", ""]
+    out += [
+        f"`paper_tables.py MODELS` at {args.tolerance}: {models}.",
+        "One thread, shortest of three runs, without limit of angle, `--face-timeout 4`.",
+        "",
+    ]
     out += edges_table(tables) + surfaces_table(tables) + systems_table(tables) + ratios_table(tables)
     args.output.parent.mkdir(parents=True, exist_ok=True)
     args.output.write_text("\n".join(out) + "\n", encoding="utf-8")

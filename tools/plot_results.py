@@ -3,9 +3,9 @@
 
     tools/plot_results.py TABLES [-o docs/results]
 
-TABLES is the folder with `models.tsv` (tools/measure_models.py), `speed.tsv` (tools/compare_occ.py) and `methods.tsv`
-(crates/methods/tools/methods_on_models.py); a plot whose table is absent is not drawn. Writes SVG files. Needs
-matplotlib.
+TABLES is the folder with `models.tsv` (tools/measure_models.py), `speed.tsv` (tools/compare_occ.py) and
+`methods.tsv` (crates/methods/tools/methods_on_models.py); a plot whose table is absent is not drawn. Writes
+SVG files. Needs matplotlib.
 """
 
 from __future__ import annotations
@@ -22,9 +22,13 @@ TOP = 1.15
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("tables", type=Path, help="folder with the tables")
-    parser.add_argument("-o", "--output", type=Path, default=Path(__file__).resolve().parent.parent / "docs" / "results")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=Path(__file__).resolve().parent.parent / "docs" / "results"
+    )
     args = parser.parse_args()
     args.output.mkdir(parents=True, exist_ok=True)
     drawn = 0
@@ -48,8 +52,16 @@ def new_figure(width: float = 8.0, height: float = 3.4):
     matplotlib.use("svg")
     import matplotlib.pyplot as plt
 
-    matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "chordal", "font.family": "sans-serif",
-                                "font.size": 9, "axes.spines.top": False, "axes.spines.right": False})
+    matplotlib.rcParams.update(
+        {
+            "svg.fonttype": "none",
+            "svg.hashsalt": "chordal",
+            "font.family": "sans-serif",
+            "font.size": 9,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+        }
+    )
     return plt.subplots(figsize=(width, height), layout="constrained")
 
 
@@ -79,14 +91,30 @@ def accuracy(rows: list[dict]):
     measured = [max(float(row["s2m"]), float(row["m2s"])) / (u + allowance(row)) for row, u in zip(by, unit)]
     meshes = range(1, len(by) + 1)
     axes.plot(meshes, proven, "_", color=OURS, markersize=7, label="proven error / tolerance")
-    axes.plot(meshes, measured, ".", color=OTHER, markersize=4, label="measured error / (tolerance + gap of the file)")
+    axes.plot(
+        meshes,
+        measured,
+        ".",
+        color=OTHER,
+        markersize=4,
+        label="measured error / (tolerance + gap of the file)",
+    )
     axes.axhline(1, color=PLAIN, linewidth=0.8)
     axes.set_ylim(0, TOP)
     over = [(mesh, error) for mesh, error in zip(meshes, measured) if error > TOP]
-    axes.plot([mesh for mesh, _ in over], [TOP] * len(over), "^", color=OTHER, markersize=6, clip_on=False,
-              label="measured, beyond the scale" if over else None)
+    axes.plot(
+        [mesh for mesh, _ in over],
+        [TOP] * len(over),
+        "^",
+        color=OTHER,
+        markersize=6,
+        clip_on=False,
+        label="measured, beyond the scale" if over else None,
+    )
     for mesh, error in over:
-        axes.annotate(f"{error:.0f}", (mesh, TOP), (0, -12), textcoords="offset points", ha="center", color=OTHER)
+        axes.annotate(
+            f"{error:.0f}", (mesh, TOP), (0, -12), textcoords="offset points", ha="center", color=OTHER
+        )
     axes.set_xlabel(f"{len(by)} meshes with exit code 0, sorted by proven error")
     axes.set_ylabel("error / tolerance")
     axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.02), ncols=3)
@@ -94,18 +122,26 @@ def accuracy(rows: list[dict]):
 
 
 def allowance(row: dict) -> float:
-    """How far the file's own edges lie off its surfaces, by our report or by the other kernel, in millimetres."""
+    """How far the file's own edges lie off its surfaces, by our report or by the other kernel, in
+    millimetres."""
     return max(float(row["gap"] or 0), float(row["occ_edge_gap"] or 0))
 
 
 def methods(rows: list[dict]):
-    """Triangles of every method, proven, over those of the default, summed over the models that all methods mesh."""
+    """Triangles of every method, proven, over those of the default, summed over the models that all methods
+    mesh."""
     figure, axes = new_figure(height=3.8)
     proven = [row for row in rows if row["bound"] == "proven" and row["triangles"]]
     names = sorted({row["strategy"] for row in proven})
-    models = set.intersection(*({row["model"] for row in proven if row["strategy"] == name} for name in names))
-    total = {name: sum(int(row["triangles"]) for row in proven if row["strategy"] == name and row["model"] in models)
-             for name in names}
+    models = set.intersection(
+        *({row["model"] for row in proven if row["strategy"] == name} for name in names)
+    )
+    total = {
+        name: sum(
+            int(row["triangles"]) for row in proven if row["strategy"] == name and row["model"] in models
+        )
+        for name in names
+    }
     order = sorted(names, key=total.get, reverse=True)
     ratios = [total[name] / total["default"] for name in order]
     bars = axes.barh(order, ratios, color=[OURS if name == "default" else PLAIN for name in order])

@@ -3,9 +3,9 @@
 
     tools/render.py MESH -o out.png [--edges] [--views iso,top] [--size 700]
 
-Orthographic, by a software z-buffer. The light follows the camera. Back faces are red, so that an inverted triangle is
-seen at once. With --edges, mesh edges are drawn, and edges with one triangle are orange. Needs numba, numpy, trimesh
-and pillow (tools/requirements.txt).
+Orthographic, by a software z-buffer. The light follows the camera. Back faces are red, so that an inverted
+triangle is seen at once. With --edges, mesh edges are drawn, and edges with one triangle are orange. Needs
+numba, numpy, trimesh and pillow (tools/requirements.txt).
 """
 
 from __future__ import annotations
@@ -28,7 +28,9 @@ VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] 
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("mesh")
     parser.add_argument("-o", "--output", required=True)
     parser.add_argument("--edges", action="store_true", help="draw the mesh edges")
@@ -39,7 +41,6 @@ def main() -> None:
         parser.error(f"unknown view: {', '.join(unknown)}")
     # Imported here, so that --help needs nothing but Python.
     from PIL import Image
-
     from z_buffer import draw, load
 
     points, faces = load(args.mesh)

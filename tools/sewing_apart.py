@@ -3,9 +3,10 @@
 
     tools/sewing_apart.py MODELS [--binary PROGRAM] [--out TABLE.md]
 
-Every STEP file of MODELS is written with `convert --unsewn`: each face an island with edges of its own, nothing shared, nothing
-called closed. It is read again, sewn with `--sew auto` and meshed at 0.2 % with the proven bound, as is the model as it came.
-The figures are those of the reports; *fails* says what the check asks for and did not get.
+Every STEP file of MODELS is written with `convert --unsewn`: each face an island with edges of its own,
+nothing shared, nothing called closed. It is read again, sewn with `--sew auto` and meshed at 0.2 % with the
+proven bound, as is the model as it came. The figures are those of the reports; *fails* says what the check
+asks for and did not get.
 """
 
 import json
@@ -25,7 +26,20 @@ def meshed(chordal: Path, model: Path, folder: Path) -> dict | None:
     """The report of one run."""
     report = folder / "report.json"
     report.unlink(missing_ok=True)
-    command = [chordal, "mesh", model, "-o", folder / "out.ply", "--tolerance", "0.2%", "--sew", "auto", "--report", report, "-q"]
+    command = [
+        chordal,
+        "mesh",
+        model,
+        "-o",
+        folder / "out.ply",
+        "--tolerance",
+        "0.2%",
+        "--sew",
+        "auto",
+        "--report",
+        report,
+        "-q",
+    ]
     subprocess.run(command, capture_output=True, timeout=TIMEOUT)
     return json.loads(report.read_text()) if report.exists() else None
 
@@ -44,11 +58,25 @@ def row(chordal: Path, model: Path, folder: Path) -> str:
     # Tolerances are shares of the diagonal.
     gap = before["max_gap"] / (before["options"]["tolerance"] / 0.002)
     whole = again["watertight"] == again["closed_in_file"] and again["watertight"] >= shells["watertight"]
-    fails = "" if whole and total("closed_shells") == total("shells") or not shells["closed_in_file"] else f"gap {gap:.1e} of the diagonal"
+    fails = (
+        ""
+        if whole and total("closed_shells") == total("shells") or not shells["closed_in_file"]
+        else f"gap {gap:.1e} of the diagonal"
+    )
     unsound = "yes" if any("audit" in u for u in after["undone"]) else ""
-    cells = [model.name, after["faces"]["total"], f"{shells['watertight']} of {shells['closed_in_file']}", total("open_before"),
-             total("open_after"), f"{most('tolerance'):.1e}", f"{most('largest_move'):.1e}",
-             f"{total('closed_shells')} of {total('shells')}", f"{again['watertight']} of {again['closed_in_file']}", unsound, fails]
+    cells = [
+        model.name,
+        after["faces"]["total"],
+        f"{shells['watertight']} of {shells['closed_in_file']}",
+        total("open_before"),
+        total("open_after"),
+        f"{most('tolerance'):.1e}",
+        f"{most('largest_move'):.1e}",
+        f"{total('closed_shells')} of {total('shells')}",
+        f"{again['watertight']} of {again['closed_in_file']}",
+        unsound,
+        fails,
+    ]
     return "| " + " | ".join(map(str, cells)) + " |"
 
 
@@ -58,8 +86,19 @@ def main() -> None:
     add_models(parser)
     parser.add_argument("--out", type=Path)
     args = parser.parse_args()
-    head = ["file", "faces", "closed shells of the file, watertight", "open before", "open after", "tolerance, mm",
-            "largest move, mm", "closed shells", "watertight", "unsound", "not closed"]
+    head = [
+        "file",
+        "faces",
+        "closed shells of the file, watertight",
+        "open before",
+        "open after",
+        "tolerance, mm",
+        "largest move, mm",
+        "closed shells",
+        "watertight",
+        "unsound",
+        "not closed",
+    ]
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     with tempfile.TemporaryDirectory() as folder:
         for model in sorted(p for p in args.models.iterdir() if p.suffix.lower() in SUFFIXES):

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""The survey's comparison of tessellation strategies with measured numbers, and the 2001 paper's table of phases.
+"""The survey's comparison of tessellation strategies with measured numbers, and the 2001 paper's table of
+phases.
 
     survey_table.py [MODELS] [--binary PROGRAM] [--tolerance 0.1%] [--results out/tables/survey.md]
 
-Runs `chordal compare … --both-bounds --json` on six models of the corpus and on those of four public ones that MODELS
-holds.
+Runs `chordal compare … --both-bounds --json` on six models of the corpus and on those of four public ones
+that MODELS holds.
 """
 
 from __future__ import annotations
@@ -23,8 +24,18 @@ from arguments import ROOT, add_binary, parser_of  # noqa: E402
 
 CORPUS = ["blade", "fillet_bspline", "torus_hole", "bracket", "spline_ball", "pipe_elbow"]
 REAL = ["trj8_k1-db-214.stp", "ec_exhaust-A.stp", "fusee.stp", "bearing.iges"]
-STRATEGIES = ["grid", "cells", "coving", "delaunay-uniform", "delaunay-adaptive", "recursive", "quadtree", "bezier",
-              "default"]
+STRATEGIES = [
+    "grid",
+    "cells",
+    "coving",
+    "delaunay-uniform",
+    "delaunay-adaptive",
+    "recursive",
+    "quadtree",
+    "bezier",
+    "default",
+]
+
 
 def main() -> int:
     args = arguments()
@@ -40,7 +51,12 @@ def main() -> int:
 
 def arguments() -> argparse.Namespace:
     parser = parser_of(__doc__)
-    parser.add_argument("models", type=Path, nargs="?", help="folder with free-form models, of any depth [default: the corpus alone]")
+    parser.add_argument(
+        "models",
+        type=Path,
+        nargs="?",
+        help="folder with free-form models, of any depth [default: the corpus alone]",
+    )
     add_binary(parser)
     parser.add_argument("--tolerance", default="0.1%")
     parser.add_argument("--results", type=Path, default=Path("out/tables/survey.md"))
@@ -48,15 +64,31 @@ def arguments() -> argparse.Namespace:
 
 
 def compare(model: Path, args: argparse.Namespace) -> dict:
-    command = [args.binary, "compare", model, "--tolerance", args.tolerance, "--angle", "off", "--both-bounds", "--json", "-q",
-               "--strategies", ",".join(STRATEGIES)]
+    command = [
+        args.binary,
+        "compare",
+        model,
+        "--tolerance",
+        args.tolerance,
+        "--angle",
+        "off",
+        "--both-bounds",
+        "--json",
+        "-q",
+        "--strategies",
+        ",".join(STRATEGIES),
+    ]
     print(model.name, file=sys.stderr, flush=True)
     return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
 def rows_of(compared: dict[str, dict], strategy: str, bound: str) -> list[tuple[dict, float]]:
-    return [(row, model["tolerance"]) for model in compared.values() for row in model["rows"]
-            if (row["strategy"], row["bound"]) == (strategy, bound)]
+    return [
+        (row, model["tolerance"])
+        for model in compared.values()
+        for row in model["rows"]
+        if (row["strategy"], row["bound"]) == (strategy, bound)
+    ]
 
 
 def survey(compared: dict[str, dict], args: argparse.Namespace) -> str:
@@ -77,19 +109,32 @@ def survey(compared: dict[str, dict], args: argparse.Namespace) -> str:
         "estimated only: measured error / tolerance | seconds / default | failed faces |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    base = {bound: [row for row, _ in rows_of(compared, "default", bound)] for bound in ("proven", "estimated")}
+    base = {
+        bound: [row for row, _ in rows_of(compared, "default", bound)] for bound in ("proven", "estimated")
+    }
     for strategy in STRATEGIES:
         proven, estimated = (rows_of(compared, strategy, bound) for bound in ("proven", "estimated"))
-        share = {bound: mean([row["triangles"] / d["triangles"] for (row, _), d in zip(rows, base[bound])])
-                 for bound, rows in (("proven", proven), ("estimated", estimated))}
-        seconds = mean([max(row["seconds"], 1e-4) / max(d["seconds"], 1e-4) for (row, _), d in zip(proven, base["proven"])])
-        errors = [row["proven_error"] / tolerance if row["proven_error"] is not None else float("inf")
-                  for row, tolerance in proven]
+        share = {
+            bound: mean([row["triangles"] / d["triangles"] for (row, _), d in zip(rows, base[bound])])
+            for bound, rows in (("proven", proven), ("estimated", estimated))
+        }
+        seconds = mean(
+            [
+                max(row["seconds"], 1e-4) / max(d["seconds"], 1e-4)
+                for (row, _), d in zip(proven, base["proven"])
+            ]
+        )
+        errors = [
+            row["proven_error"] / tolerance if row["proven_error"] is not None else float("inf")
+            for row, tolerance in proven
+        ]
         measured = max(row["measured_error"] / tolerance for row, tolerance in estimated)
         failed = sum(row["failed_faces"] for row, _ in proven + estimated)
-        out.append(f"| `{strategy}` | {share['proven']:.2f} | "
-                   f"{mean([row['ratio'] for row, _ in proven]):.2f} | {share['estimated']:.2f} | {largest(errors)} | "
-                   f"{measured:.2f} | {seconds:.1f} | {failed} |")
+        out.append(
+            f"| `{strategy}` | {share['proven']:.2f} | "
+            f"{mean([row['ratio'] for row, _ in proven]):.2f} | {share['estimated']:.2f} | {largest(errors)} | "
+            f"{measured:.2f} | {seconds:.1f} | {failed} |"
+        )
     return "\n".join(out) + "\n\n"
 
 
@@ -108,12 +153,18 @@ def phases(compared: dict[str, dict]) -> str:
     for name, model in compared.items():
         row = next(r for r in model["rows"] if (r["strategy"], r["bound"]) == ("quadtree", "proven"))
         times = [1000 * row["phases"][p] for p in ("conversion", "subdivision", "traversal", "triangulation")]
-        numbered = {m.group(1): s["count"] for s in row["stages"] if (m := re.search(r"\((\d)\)$", s["name"]))}
+        numbered = {
+            m.group(1): s["count"] for s in row["stages"] if (m := re.search(r"\((\d)\)$", s["name"]))
+        }
         cells = [f"{t:.1f}" for t in [*times, sum(times)]] + [str(numbered.get(k, 0)) for k in "1234"]
         out.append(f"| {name} | {model['faces']} | {' | '.join(cells)} |")
-    out += ["", "Theirs, in seconds on a processor of 2001: 0.03, 0.27, 0.3 and 0.05 for 10 surfaces; 0.8, 211.8, 106.3 and 9.0 for "
-            "4,419. Subdivision takes the largest share there; here cutting and triangulating does, which in theirs sets vertices wherever "
-            "curves cross borders and needs no search for a way round them.", ""]
+    out += [
+        "",
+        "Theirs, in seconds on a processor of 2001: 0.03, 0.27, 0.3 and 0.05 for 10 surfaces; 0.8, 211.8, 106.3 and 9.0 for "
+        "4,419. Subdivision takes the largest share there; here cutting and triangulating does, which in theirs sets vertices wherever "
+        "curves cross borders and needs no search for a way round them.",
+        "",
+    ]
     return "\n".join(out)
 
 

@@ -4,10 +4,10 @@
     tools/variants.py [--binary PROGRAM] [--corpus corpus] [--only PATTERN] [--tolerance 0.1%] [--angle 20deg]
                       [--results out/tables/variants] [--keep FOLDER]
 
-The tolerance is fixed in model terms: in mm as the original resolves it, times 1000 where the model is 1000 times
-larger. A variant must have the original's exit code and faces, watertight shells and a proven error within the
-tolerance, and its number of triangles must lie within the larger of 1 % and 4. The mesh of the original must be the
-same, byte for byte, on 1, 2 and 8 threads.
+The tolerance is fixed in model terms: in mm as the original resolves it, times 1000 where the model is 1000
+times larger. A variant must have the original's exit code and faces, watertight shells and a proven error
+within the tolerance, and its number of triangles must lie within the larger of 1 % and 4. The mesh of the
+original must be the same, byte for byte, on 1, 2 and 8 threads.
 """
 
 from __future__ import annotations
@@ -49,19 +49,41 @@ class Binary:
         mesh, report = self.folder / "mesh.ply", self.folder / "mesh.json"
         for old in (mesh, report):
             old.unlink(missing_ok=True)
-        command = [self.path, "mesh", model, "-o", mesh, "--tolerance", tolerance, "--angle", self.angle, "--jobs",
-                   str(threads), "--report", report, "--quiet"]
+        command = [
+            self.path,
+            "mesh",
+            model,
+            "-o",
+            mesh,
+            "--tolerance",
+            tolerance,
+            "--angle",
+            self.angle,
+            "--jobs",
+            str(threads),
+            "--report",
+            report,
+            "--quiet",
+        ]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=self.timeout)
+            done = subprocess.run(
+                command, capture_output=True, text=True, errors="replace", timeout=self.timeout
+            )
         except subprocess.TimeoutExpired:
             return Run(None, None, b"", f"no result after {self.timeout:g} s")
-        return Run(done.returncode, json.loads(report.read_text()) if report.exists() else None,
-                   mesh.read_bytes() if mesh.exists() else b"", done.stderr.strip())
+        return Run(
+            done.returncode,
+            json.loads(report.read_text()) if report.exists() else None,
+            mesh.read_bytes() if mesh.exists() else b"",
+            done.stderr.strip(),
+        )
 
 
 def main() -> int:
     args = arguments()
-    models = sorted(p for p in args.corpus.glob("*.step") if any(fnmatch.fnmatch(p.stem, o) for o in args.only))
+    models = sorted(
+        p for p in args.corpus.glob("*.step") if any(fnmatch.fnmatch(p.stem, o) for o in args.only)
+    )
     with tempfile.TemporaryDirectory() as scratch:
         folder = args.keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
@@ -93,7 +115,11 @@ def examine(binary: Binary, model: Path, tolerance: str, folder: Path) -> Line |
     """One model with all its variants; None where it has nothing to mesh."""
     first = binary.run(model, tolerance)
     if first.report is None:
-        return None if first.exit == 2 else Line(model.stem, {}, [f"original: exit {first.exit}: {first.said[:100]}"])
+        return (
+            None
+            if first.exit == 2
+            else Line(model.stem, {}, [f"original: exit {first.exit}: {first.said[:100]}"])
+        )
     absolute = first.report["options"]["tolerance"]
     line = Line(model.stem, {"original": first.report["triangles"]}, [])
     exact = f"{absolute!r}mm"
@@ -139,11 +165,17 @@ def markdown(lines: list[Line], args: argparse.Namespace) -> str:
 
     names = ["original", *VARIANTS]
     kept = sum(not line.wrong for line in lines)
-    text = ["# Variants of the corpus", "",
-            f"Tolerance {args.tolerance} of the original's diagonal, fixed in model terms; angle {args.angle}. Triangles of each "
-            "variant; – where it does not apply (`tools/variants_text.py` says why). Last: what it does not keep.", "",
-            f"{len(lines)} models, {kept} keep everything.", "",
-            "| model | " + " | ".join(names) + " | differs |", "|---" * (len(names) + 2) + "|"]
+    text = [
+        "# Variants of the corpus",
+        "",
+        f"Tolerance {args.tolerance} of the original's diagonal, fixed in model terms; angle {args.angle}. Triangles of each "
+        "variant; – where it does not apply (`tools/variants_text.py` says why). Last: what it does not keep.",
+        "",
+        f"{len(lines)} models, {kept} keep everything.",
+        "",
+        "| model | " + " | ".join(names) + " | differs |",
+        "|---" * (len(names) + 2) + "|",
+    ]
     for line in lines:
         cells = [str(line.triangles[n]) if n in line.triangles else "–" for n in names]
         text.append(f"| {line.model} | " + " | ".join(cells) + f" | {'; '.join(line.wrong)} |")

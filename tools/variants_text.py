@@ -1,11 +1,12 @@
 """Rotated, mirrored and scaled variants of a STEP file, made on its text so that nothing else in it changes.
 
-- rotated: every 3D point and direction is turned. Placements turn with the rest: R·T·R⁻¹ places a turned part.
-- mirrored: every representation with a shape is wrapped in a mapped item with a mirroring operator; the placements T
-  of an assembly become S·T·S, which is a rigid motion again.
+- rotated: every 3D point and direction is turned. Placements turn with the rest: R·T·R⁻¹ places a turned
+  part.
+- mirrored: every representation with a shape is wrapped in a mapped item with a mirroring operator; the
+  placements T of an assembly become S·T·S, which is a rigid motion again.
 - metres: the unit is a thousand times larger, the numbers stay.
-- thousand: the numbers are a thousand times larger, the unit stays; only for files without pcurves, whose lengths
-  hide among angles.
+- thousand: the numbers are a thousand times larger, the unit stays; only for files without pcurves, whose
+  lengths hide among angles.
 """
 
 from __future__ import annotations
@@ -23,9 +24,19 @@ TRIPLE = rf"\(\s*({NUMBER})\s*,\s*({NUMBER})\s*,\s*({NUMBER})\s*\)"
 STRING = r"'(?:[^']|'')*'"
 
 # Entities with lengths after the placement: how many of the numbers that follow are lengths.
-LENGTHS = {"CIRCLE": 1, "ELLIPSE": 2, "HYPERBOLA": 2, "PARABOLA": 1, "CYLINDRICAL_SURFACE": 1, "CONICAL_SURFACE": 1,
-           "SPHERICAL_SURFACE": 1, "TOROIDAL_SURFACE": 2, "DEGENERATE_TOROIDAL_SURFACE": 2, "OFFSET_SURFACE": 1,
-           "VECTOR": 1}
+LENGTHS = {
+    "CIRCLE": 1,
+    "ELLIPSE": 2,
+    "HYPERBOLA": 2,
+    "PARABOLA": 1,
+    "CYLINDRICAL_SURFACE": 1,
+    "CONICAL_SURFACE": 1,
+    "SPHERICAL_SURFACE": 1,
+    "TOROIDAL_SURFACE": 2,
+    "DEGENERATE_TOROIDAL_SURFACE": 2,
+    "OFFSET_SURFACE": 1,
+    "VECTOR": 1,
+}
 
 
 def real(x: float) -> str:
@@ -53,7 +64,9 @@ def map_triples(text: str, entity: str, change: Callable[[np.ndarray], np.ndarra
 def map_lists(text: str, change: Callable[[np.ndarray], np.ndarray]) -> str:
     """The coordinates of tessellated items."""
     each = lambda m: triple(change(np.array([float(m[i]) for i in (1, 2, 3)])))
-    return re.sub(r"COORDINATES_LIST\s*\(.*?\)\s*\)\s*\)", lambda m: re.sub(TRIPLE, each, m[0]), text, flags=re.S)
+    return re.sub(
+        r"COORDINATES_LIST\s*\(.*?\)\s*\)\s*\)", lambda m: re.sub(TRIPLE, each, m[0]), text, flags=re.S
+    )
 
 
 def rotated(text: str) -> str:
@@ -85,13 +98,20 @@ def mirrored(text: str) -> str:
     ids = [int(n) for n in re.findall(r"#(\d+)\s*=", text)]
     writer = Appender(max(ids))
     shapes = set(re.findall(r"SHAPE_DEFINITION_REPRESENTATION\s*\(\s*#\d+\s*,\s*#(\d+)\s*\)", text))
-    wrapped = {old: writer.wrap(old, context) for old in sorted(shapes, key=int) if (context := _context_of(text, old))}
+    wrapped = {
+        old: writer.wrap(old, context)
+        for old in sorted(shapes, key=int)
+        if (context := _context_of(text, old))
+    }
     swap = lambda m: re.sub(r"#(\d+)", lambda n: f"#{wrapped.get(n[1], n[1])}", m[0])
     text = re.sub(r"SHAPE_DEFINITION_REPRESENTATION\s*\([^;]*;", swap, text)
     text = re.sub(r"\bREPRESENTATION_RELATIONSHIP\s*\([^)]*\)", swap, text)
     frames = lambda m: m[1] + ",".join("#" + str(writer.mirror_frame(text, n)) for n in (m[2], m[3])) + ")"
-    text = re.sub(rf"(ITEM_DEFINED_TRANSFORMATION\s*\(\s*{STRING}\s*,\s*{STRING}\s*,\s*)#(\d+)\s*,\s*#(\d+)\s*\)",
-                  frames, text)
+    text = re.sub(
+        rf"(ITEM_DEFINED_TRANSFORMATION\s*\(\s*{STRING}\s*,\s*{STRING}\s*,\s*)#(\d+)\s*,\s*#(\d+)\s*\)",
+        frames,
+        text,
+    )
     end = text.rindex("ENDSEC;")
     return text[:end] + "\n".join(writer.lines) + "\n" + text[end:]
 
@@ -129,15 +149,19 @@ class Appender:
         return self.add(f"DIRECTION('',{triple(values)})")
 
     def frame(self, origin: np.ndarray, z: np.ndarray, x: np.ndarray) -> int:
-        return self.add(f"AXIS2_PLACEMENT_3D('',#{self.point(origin)},#{self.direction(z)},#{self.direction(x)})")
+        return self.add(
+            f"AXIS2_PLACEMENT_3D('',#{self.point(origin)},#{self.direction(z)},#{self.direction(x)})"
+        )
 
     def wrap(self, representation: str, context: str) -> int:
         """A representation that holds the mirror image of another."""
         e = np.eye(3)
         axes = self.frame(np.zeros(3), e[2], e[0])
         source = self.add(f"REPRESENTATION_MAP(#{axes},#{representation})")
-        mirror = self.add(f"CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',#{self.direction(-e[0])},"
-                          f"#{self.direction(e[1])},#{self.point(np.zeros(3))},1.,#{self.direction(e[2])})")
+        mirror = self.add(
+            f"CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',#{self.direction(-e[0])},"
+            f"#{self.direction(e[1])},#{self.point(np.zeros(3))},1.,#{self.direction(e[2])})"
+        )
         item = self.add(f"MAPPED_ITEM('',#{source},#{mirror})")
         return self.add(f"SHAPE_REPRESENTATION('',(#{axes},#{item}),#{context})")
 

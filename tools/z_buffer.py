@@ -33,7 +33,9 @@ def camera(view: View) -> np.ndarray:
 
 
 @nb.njit(cache=True)
-def fill(screen: np.ndarray, faces: np.ndarray, colours: np.ndarray, image: np.ndarray, depth: np.ndarray) -> None:
+def fill(
+    screen: np.ndarray, faces: np.ndarray, colours: np.ndarray, image: np.ndarray, depth: np.ndarray
+) -> None:
     """Draws triangles whose corners are (x, y, depth) in pixels."""
     height, width = depth.shape
     for i in range(len(faces)):
@@ -57,8 +59,14 @@ def fill(screen: np.ndarray, faces: np.ndarray, colours: np.ndarray, image: np.n
 
 
 @nb.njit(cache=True)
-def lines(screen: np.ndarray, edges: np.ndarray, colours: np.ndarray, image: np.ndarray, depth: np.ndarray,
-          bias: float) -> None:
+def lines(
+    screen: np.ndarray,
+    edges: np.ndarray,
+    colours: np.ndarray,
+    image: np.ndarray,
+    depth: np.ndarray,
+    bias: float,
+) -> None:
     """Draws edges where they are not hidden by more than `bias`."""
     height, width = depth.shape
     for i in range(len(edges)):

@@ -1,4 +1,5 @@
-"""Broken files: one clear sentence and exit 2, or exit 1 with everything that can be saved; never a panic or a hang."""
+"""Broken files: one clear sentence and exit 2, or exit 1 with everything that can be saved; never a panic or
+a hang."""
 
 from __future__ import annotations
 

@@ -1,8 +1,10 @@
-"""Small files of the exchange formats (JSON, OBJ, 3DM), good and broken, with an index of what is known about them.
+"""Small files of the exchange formats (JSON, OBJ, 3DM), good and broken, with an index of what is known about
+them.
 
     python corpus/make/exchange.py
 
-3DM files need `rhino3dm` and come out with new identifiers each time; they are only written where they are missing.
+3DM files need `rhino3dm` and come out with new identifiers each time; they are only written where they are
+missing.
 """
 
 from __future__ import annotations
@@ -20,8 +22,8 @@ from written import corpus_folder
 
 @dataclass(frozen=True)
 class File:
-    """A file: its faces (of broken ones those that are saved), whether its mesh is closed, the right exit codes of
-    `chordal mesh`, and a phrase that its message or report must hold."""
+    """A file: its faces (of broken ones those that are saved), whether its mesh is closed, the right exit
+    codes of `chordal mesh`, and a phrase that its message or report must hold."""
 
     name: str
     tests: str
@@ -47,7 +49,7 @@ def text(path: Path, *lines: str) -> None:
     path.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
 
 
-# --- OBJ ------------------------------------------------------------------------------------------------------------
+# --- OBJ
 
 GRID = [f"v {x} {y} {round(math.sin(x * 1.3) * math.cos(y * 0.9), 6)}" for y in range(4) for x in range(4)]
 ALL = "surf 0 1 0 1 " + " ".join(map(str, range(1, 17)))
@@ -137,7 +139,7 @@ def obj_cut(path: Path) -> None:
     text(path, *GRID, "cstype bezier", "deg 3 3", ALL, "parm u 0 1", "parm v 0 1")
 
 
-# --- JSON -----------------------------------------------------------------------------------------------------------
+# --- JSON
 
 
 def geomdl(*trims: dict) -> dict:
@@ -256,7 +258,7 @@ def model_circle(path: Path) -> None:
     dump(path, data)
 
 
-# --- 3DM ------------------------------------------------------------------------------------------------------------
+# --- 3DM
 
 
 def rhino(fill: Callable, version: int, path: Path) -> None:

@@ -28,7 +28,8 @@ class Entity:
 
 @dataclass
 class Iges:
-    """A file under construction. `add` returns the number of an entity; nested tuples and lists of values are flattened."""
+    """A file under construction. `add` returns the number of an entity; nested tuples and lists of values are
+    flattened."""
 
     unit: tuple[int, str] = (2, "MM")
     scale: float = 1.0

@@ -1,5 +1,5 @@
-"""Inventor files to be looked at: the three models by which Krishnamurthy, Khardekar and McMains 2009 show trimmed drawing,
-made anew. `iv_files.py` writes them with the others.
+"""Inventor files to be looked at: the three models by which Krishnamurthy, Khardekar and McMains 2009 show
+trimmed drawing, made anew. `iv_files.py` writes them with the others.
 """
 
 from __future__ import annotations
@@ -55,7 +55,8 @@ def oval(middle: tuple[float, float], half: tuple[float, float]) -> str:
 
 
 def hull(sections: list[Section], knots: list[float], axes: str, trim: str = "") -> str:
-    """Ellipses along an axis, cubic from one to the next. `axes`: which of x, y, z the axis, the width and the height are."""
+    """Ellipses along an axis, cubic from one to the next. `axes`: which of x, y, z the axis, the width and
+    the height are."""
     net = []
     for along, width, middle, height in sections:
         for (a, b), w in zip(RING, WEIGHTS):

@@ -261,7 +261,8 @@ def torus_lemon(path: Path) -> None:
 
 
 def plate(s: Step, order: list[int], outer: int) -> list[str]:
-    """A plate with two round holes. The loops of its two large faces come in `order`; `outer` is called outer."""
+    """A plate with two round holes. The loops of its two large faces come in `order`; `outer` is called
+    outer."""
     low, high = (-20, -10, 0), (20, 10, 5)
     faces = block(s, low, high, skip="top bottom")
     corners = [(-20, -10), (20, -10), (20, 10), (-20, 10)]

@@ -65,7 +65,8 @@ def normalise(path: Path) -> None:
 
 
 def count(path: Path) -> tuple[int, int, bool] | None:
-    """Faces (instances counted), solids and validity as OpenCASCADE sees the file; None where it reads nothing."""
+    """Faces (instances counted), solids and validity as OpenCASCADE sees the file; None where it reads
+    nothing."""
     doc = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     reader = STEPCAFControl_Reader()
     if reader.ReadFile(os.fspath(path)) != IFSelect_RetDone or not reader.Transfer(doc):

@@ -1,11 +1,13 @@
-"""Writes an Inventor scene of loose, partly trimmed spline surfaces: a wavy body like a car's, for the bench of sewing.
+"""Writes an Inventor scene of loose, partly trimmed spline surfaces: a wavy body like a car's, for the bench
+of sewing.
 
     python corpus/make/scene_large.py OUT.iv [--surfaces 4000] [--gap 2e-5]
 
-The body is one smooth function of a grid of cells. Each cell is a bicubic patch of its own that interpolates the
-function at sixteen places, so that neighbours meet within a few micrometres but share nothing. Of every twenty cells
-two are larger than their cell and trimmed back to it, one is cut in two along a wave by a spline, one has a round
-hole. `--gap` moves each patch by a random amount (metres). The file is the same for the same arguments.
+The body is one smooth function of a grid of cells. Each cell is a bicubic patch of its own that interpolates
+the function at sixteen places, so that neighbours meet within a few micrometres but share nothing. Of every
+twenty cells two are larger than their cell and trimmed back to it, one is cut in two along a wave by a
+spline, one has a round hole. `--gap` moves each patch by a random amount (metres). The file is the same for
+the same arguments.
 """
 
 from __future__ import annotations

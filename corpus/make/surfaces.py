@@ -1,4 +1,5 @@
-"""Surfaces that an ordinary kernel does not write: high degree, odd weights and knots, collapsed rows, bounded ones."""
+"""Surfaces that an ordinary kernel does not write: high degree, odd weights and knots, collapsed rows,
+bounded ones."""
 
 from __future__ import annotations
 
@@ -206,7 +207,8 @@ def spline_forms(path: Path) -> None:
 
 
 def _form_face(s: Step, kind: str, net: Net) -> str:
-    """A face over a surface whose knots are given by the name of its entity alone. Its rows across are cubic too."""
+    """A face over a surface whose knots are given by the name of its entity alone. Its rows across are cubic
+    too."""
     control = "(" + ",".join(refs([s.point(p) for p in row]) for row in net) + ")"
     surface = s.add(f"{kind}_SURFACE('',3,3,{control},.UNSPECIFIED.,.F.,.F.,.F.)")
     corner = lambda i, j: _corner(kind, net, i, j)

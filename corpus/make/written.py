@@ -1,5 +1,5 @@
-"""Lists of files written by hand in a format other than STEP: functions that return the content, and what is known
-about it."""
+"""Lists of files written by hand in a format other than STEP: functions that return the content, and what is
+known about it."""
 
 from __future__ import annotations
 

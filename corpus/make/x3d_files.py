@@ -1,5 +1,5 @@
-"""The VRML97 and X3D files of the corpus, and broken ones: one function each. All are called .x3d; what they hold
-tells the encoding.
+"""The VRML97 and X3D files of the corpus, and broken ones: one function each. All are called .x3d; what they
+hold tells the encoding.
 
     python corpus/make/x3d_files.py        # writes corpus/x3d and corpus/x3d/bad with their INDEX.tsv
 """
