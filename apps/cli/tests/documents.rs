@@ -72,7 +72,8 @@ fn the_commands_of_the_tutorial_run() {
         let (block, _) = block.split_once("```").expect("a block ends");
         for line in block.lines().filter(|line| line.starts_with("chordal ")) {
             let broken = line.contains("/bad/");
-            let args: Vec<String> = line.split_whitespace().skip(1).map(|word| place(word, scratch.path())).collect();
+            let args: Vec<String> =
+                line.split_whitespace().skip(1).map(|word| place(word, scratch.path())).collect();
             chordal(&args).exits(if broken { &[1] } else { &[0] });
             count += 1;
         }
