@@ -87,23 +87,17 @@ def judge_good(entry: dict[str, str], code: int | None, said: str, report: dict 
     if int(entry["faces"]) == 0:
         return [] if code in (0, 1, 2) else [f"exit {code}: {said}"]
     if code != 0 or report is None:
-        reasons = (
-            [f"{f['id']} {f['kind']}: {f['reason']}" for f in report["faces"]["failed"]] if report else []
-        )
+        problems = report["problems"] if report else []
+        reasons = [f"{p['entity']}: {p['message']}" for p in problems if p["severity"] == "error"]
         return [f"exit {code}: {'; '.join(reasons[:3]) or said.splitlines()[-1:] or 'nothing said'}"]
     wrong = []
-    if report["faces"]["total"] != int(entry["faces"]) and not report["passed_through"]:
+    if report["faces"]["total"] != int(entry["faces"]) and not report["tessellated_input"]:
         wrong.append(f"{report['faces']['total']} faces, not {entry['faces']}")
-    if entry["closed"] == "yes" and not report["passed_through"]:
+    if entry["closed"] == "yes" and not report["tessellated_input"]:
         shells = report["shells"]
-        if (
-            shells["closed_in_file"] < int(entry["solids"])
-            or shells["watertight"] != shells["closed_in_file"]
-        ):
-            wrong.append(
-                f"{shells['watertight']} watertight of {shells['closed_in_file']} closed shells, "
-                f"{entry['solids']} solids"
-            )
+        if shells["closed_in_file"] < int(entry["solids"]) or shells["leaking"] > 0:
+            wrong.append(f"{shells['leaking']} leaking of {shells['closed_in_file']} closed shells, "
+                         f"{entry['solids']} solids")
     if report["proven_error"] is not None and report["proven_error"] > report["options"]["tolerance"]:
         wrong.append("proven error over the tolerance")
     return wrong
@@ -115,9 +109,7 @@ def judge_bad(entry: dict[str, str], code: int | None, said: str, report: dict |
         wrong.append(f"exit {code}, not {entry['exit']}: {said[:200]}")
     if "panicked" in said or "RUST_BACKTRACE" in said:
         wrong.append(f"a panic: {said[:200]}")
-    everything = said + json.dumps(
-        {k: v for k, v in (report or {}).items() if k in ("warnings", "undone", "faces")}
-    )
+    everything = said + json.dumps({k: v for k, v in (report or {}).items() if k in ("problems",)})
     if code is not None and entry["phrase"].lower() not in everything.lower():
         wrong.append(f"nothing said of `{entry['phrase']}`: {said[:200]}")
     return wrong

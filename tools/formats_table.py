@@ -38,18 +38,11 @@ def meshed(chordal: str, path: Path, mesh: Path) -> tuple[int, dict | None, str]
 def row(name: str, expected: str, code: int, told: dict | None, last: str) -> str:
     if told is None:
         return f"| {name} | | {expected} | | | | | | {code}: {last} |"
+    errors = [p["message"] for p in told["problems"] if p["severity"] == "error"]
     shells, proven = told["shells"], told["proven_error"]
-    cells = [
-        name,
-        told["faces"]["total"],
-        expected,
-        told["triangles"],
-        f"{told['options']['tolerance']:.3g}",
-        "none" if proven is None else f"{proven:.3g}",
-        f"{told['max_gap']:.1e}",
-        f"{shells['watertight']} of {shells['closed_in_file']}",
-        code if code == 0 else f"{code}: {'; '.join(told['undone'])}",
-    ]
+    cells = [name, told["faces"]["total"], expected, told["triangles"], f"{told['options']['tolerance']:.3g}",
+             "none" if proven is None else f"{proven:.3g}", f"{told['max_edge_gap']:.1e}",
+             f"{shells['closed_in_file'] - shells['leaking']} of {shells['closed_in_file']}", code if code == 0 else f"{code}: {'; '.join(errors)}"]
     return "| " + " | ".join(map(str, cells)) + " |"
 
 

@@ -54,7 +54,7 @@ def child(verifier: str, path: Path, mesh: str, report: Path) -> dict:
     verify.load_step = lambda _: (shape, None)
     reference = verify.Reference(str(path), 60000)
     points, faces = verify.load_mesh(mesh)
-    result = verify.verify(reference, points, faces, told["options"]["tolerance"] + told["max_gap"], 40000)
+    result = verify.verify(reference, points, faces, told["options"]["tolerance"] + told["max_edge_gap"], 40000)
     gap = max(reference.edge_gap, 0.0)
     return {
         "to_mesh": result["s2m"]["max"],
@@ -331,27 +331,11 @@ def row(args, path: Path, folder: Path) -> str:
         return f"| {name} |" + " |" * 11 + f" refused: {why} |"
     parts = told["sewing"]
     nearest = [o["nearest"] for p in parts for o in p["open"] if o["nearest"] is not None]
-    tolerance, gap = told["options"]["tolerance"], told["max_gap"]
-    cells = [
-        name,
-        told["faces"]["total"],
-        sum(p["open_before"] for p in parts),
-        sum(p["open_after"] for p in parts),
-        f"{max((p['largest_move'] for p in parts), default=0.0):.1e}",
-        f"{min(nearest):.1e}" if nearest else "",
-        f"{told['shells']['watertight']} of {told['shells']['closed_in_file']}",
-        f"{tolerance:.3g}",
-        f"{gap:.1e}",
-    ]
-    command = [
-        sys.executable,
-        __file__,
-        "--child",
-        args.verify,
-        str(path),
-        str(folder / "mesh.ply"),
-        str(folder / "report.json"),
-    ]
+    tolerance, gap = told["options"]["tolerance"], told["max_edge_gap"]
+    cells = [name, told["faces"]["total"], sum(p["open_before"] for p in parts), sum(p["open_after"] for p in parts),
+             f"{max((p['largest_move'] for p in parts), default=0.0):.1e}", f"{min(nearest):.1e}" if nearest else "",
+             f"{told['shells']['closed_in_file'] - told['shells']['leaking']} of {told['shells']['closed_in_file']}", f"{tolerance:.3g}", f"{gap:.1e}"]
+    command = [sys.executable, __file__, "--child", args.verify, str(path), str(folder / "mesh.ply"), str(folder / "report.json")]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT)
         found = json.loads(done.stdout.strip().splitlines()[-1])

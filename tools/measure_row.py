@@ -111,26 +111,28 @@ def row_of(run, report: dict | None, measured: dict | None, faces_index: int | N
 def add_report(row: Row, report: dict) -> None:
     faces = report["faces"]
     row.faces = faces["total"]
-    row.failed = sum(f["instances"] for f in faces["failed"])
-    row.zero_area = sum(f["instances"] for f in faces["zero_area"])
+    row.failed = faces["failed"]
+    row.zero_area = faces["zero_area"]
     row.triangles = report["triangles"]
     row.lower_bound = report["lower_bound"]
     row.tolerance_mm = report["options"]["tolerance"]
     row.proven_error = report["proven_error"]
-    row.gap = report["max_gap"]
+    row.gap = report["max_edge_gap"]
     row.diagonal = report["input"]["diagonal"]
     row.open_edges = report["open_edges"]
     row.inconsistent_edges = report["inconsistent_edges"]
     row.shells_closed = report["shells"]["closed_in_file"]
-    row.shells_watertight = report["shells"]["watertight"]
-    for f in faces["failed"]:
-        row.notes.append(f"{f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}")
-        row.reasons[f"{f['kind']}: {re.sub(r'[-#0-9.e+]*[0-9]', '…', f['reason'])}"] += f["instances"]
-    row.notes += [
-        f"zero area: {f['id']} (line {f['line']}, {f['kind']}, ×{f['instances']}): {f['reason']}"
-        for f in faces["zero_area"]
-    ]
-    row.notes += report["undone"]
+    row.shells_watertight = report["shells"]["closed_in_file"] - report["shells"]["leaking"]
+    for problem in report["problems"]:
+        face = report["faces_detail"][problem["face"]] if problem["face"] is not None else None
+        place = f"{problem['entity']} (line {problem['line']})"
+        if face is not None and face["status"] != "meshed":
+            place = f"{place[:-1]}, {face['kind']}, ×{face['instances']})"
+        if face is not None and face["status"] == "failed":
+            pattern = re.sub(r"[-#0-9.e+]*[0-9]", "…", problem["message"])
+            row.reasons[f"{face['kind']}: {pattern}"] += face["instances"]
+        if problem["severity"] == "error" or problem["code"] == "zero-area":
+            row.notes.append(f"{place}: {problem['message']}")
 
 
 def add_measured(row: Row, measured: dict) -> None:

@@ -96,9 +96,9 @@ def measure(verify: ModuleType, reference: Any, origins: list[str | None], mesh:
     """One mesh of the model."""
     verify.MeshDist.largest = np.zeros(0)
     points, faces = verify.load_mesh(mesh)
-    verify.suspect = report["options"]["tolerance"] + report["max_gap"]
+    verify.suspect = report["options"]["tolerance"] + report["max_edge_gap"]
     # A face counts as missing when it is three times this away: the looseness of the file is no missing face.
-    result = verify.verify(reference, points, faces, report["options"]["tolerance"] + report["max_gap"])
+    result = verify.verify(reference, points, faces, report["options"]["tolerance"] + report["max_edge_gap"])
     if "error" in result:
         return {"mesh": mesh, "error": result["error"]}
     distance = verify.MeshDist.largest
@@ -167,18 +167,18 @@ def replaced(origins: list[str | None], report: dict) -> dict:
     """Faces of ours that the other kernel did not keep as they are, and how many faces of unknown origin it
     has."""
     known = set(origins)
-    lost = {face["id"]: face["instances"] for face in report["face_list"] if face["id"] not in known}
+    lost = {face["entity"]: face["instances"] for face in report["faces_detail"] if face["entity"] not in known}
     return {"ours": lost, "theirs": origins.count(None)}
 
 
 def bounds_by_entity(report: dict) -> tuple[dict[str, float | None], set[str]]:
     """The bound of every face entity, and the entities that the report already calls failed or of no area."""
     bounds: dict[str, float | None] = {}
-    for face in report["face_list"]:
+    for face in report["faces_detail"]:
         proven, gap = face["proven_error"], face["gap"]
         bound = None if proven is None else proven + (gap or 0.0)
-        if face["id"] in bounds and None not in (bounds[face["id"]], bound):
-            bound = max(bound, bounds[face["id"]])
-        bounds[face["id"]] = bound
-    undone = report["faces"]["failed"] + report["faces"]["zero_area"]
-    return bounds, {face["id"] for face in undone}
+        if face["entity"] in bounds and None not in (bounds[face["entity"]], bound):
+            bound = max(bound, bounds[face["entity"]])
+        bounds[face["entity"]] = bound
+    undone = [face for face in report["faces_detail"] if face["status"] != "meshed"]
+    return bounds, {face["entity"] for face in undone}

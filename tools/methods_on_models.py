@@ -158,7 +158,7 @@ def measure(model: Path, names: list[str], args: argparse.Namespace, expected: d
 
 def kind_of(report: Path) -> str:
     """The class of a model by its faces: a single one; a tenth or more of them splines; or neither."""
-    faces = json.loads(report.read_text())["face_list"]
+    faces = json.loads(report.read_text())["faces_detail"]
     splines = sum(face["instances"] for face in faces if face["kind"] == "nurbs")
     whole = sum(face["instances"] for face in faces)
     if whole == 1:
@@ -213,13 +213,9 @@ def line_of(name: str, bound: str, run: Meshing, measured: dict | None, faces: i
     report = json.loads(run.report.read_text())
     row = row_of(run, report, measured, faces)
     line.triangles, line.ratio = report["triangles"], report["triangles"] / max(report["lower_bound"], 1)
-    line.tolerance, line.proven, line.gap = (
-        report["options"]["tolerance"],
-        report["proven_error"],
-        max(row.gap or 0.0, row.occ_edge_gap or 0.0),
-    )
-    line.closed = report["watertight"]
-    line.failed = sum(f["instances"] for f in report["faces"]["failed"])
+    line.tolerance, line.proven, line.gap = report["options"]["tolerance"], report["proven_error"], max(row.gap or 0.0, row.occ_edge_gap or 0.0)
+    line.closed = report["closedness"] == "closed"
+    line.failed = report["faces"]["failed"]
     line.measured = row.measured
     return line
 

@@ -92,7 +92,7 @@ def failed_by_us(reports: Path, model: Path) -> dict[str, str]:
     for path in sorted(reports.glob(f"{model.name}.*.json")):
         report = json.loads(path.read_text())
         if "faces" in report:
-            failed |= {face["id"]: face["reason"] for face in report["faces"]["failed"]}
+            failed |= {p["entity"]: p["message"] for p in report["problems"] if p["face"] is not None and p["severity"] == "error"}
     return failed
 
 

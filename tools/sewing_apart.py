@@ -56,27 +56,13 @@ def row(chordal: Path, model: Path, folder: Path) -> str:
     most = lambda key: max((p[key] for p in parts), default=0.0)
     shells, again = before["shells"], after["shells"]
     # Tolerances are shares of the diagonal.
-    gap = before["max_gap"] / (before["options"]["tolerance"] / 0.002)
-    whole = again["watertight"] == again["closed_in_file"] and again["watertight"] >= shells["watertight"]
-    fails = (
-        ""
-        if whole and total("closed_shells") == total("shells") or not shells["closed_in_file"]
-        else f"gap {gap:.1e} of the diagonal"
-    )
-    unsound = "yes" if any("audit" in u for u in after["undone"]) else ""
-    cells = [
-        model.name,
-        after["faces"]["total"],
-        f"{shells['watertight']} of {shells['closed_in_file']}",
-        total("open_before"),
-        total("open_after"),
-        f"{most('tolerance'):.1e}",
-        f"{most('largest_move'):.1e}",
-        f"{total('closed_shells')} of {total('shells')}",
-        f"{again['watertight']} of {again['closed_in_file']}",
-        unsound,
-        fails,
-    ]
+    gap = before["max_edge_gap"] / (before["options"]["tolerance"] / 0.002)
+    whole = again["leaking"] == 0 and again["closed"] >= shells["closed"]
+    fails = "" if whole and total("closed_shells") == total("shells") or not shells["closed_in_file"] else f"gap {gap:.1e} of the diagonal"
+    unsound = "yes" if any(p["stage"] == "audit" for p in after["problems"]) else ""
+    cells = [model.name, after["faces"]["total"], f"{shells['closed']} of {shells['closed_in_file']}", total("open_before"),
+             total("open_after"), f"{most('tolerance'):.1e}", f"{most('largest_move'):.1e}",
+             f"{total('closed_shells')} of {total('shells')}", f"{again['closed']} of {again['closed_in_file']}", unsound, fails]
     return "| " + " | ".join(map(str, cells)) + " |"
 
 

@@ -9,7 +9,7 @@ pub fn run(args: &ConvertArgs) -> Exit {
     match chordal::convert(&args.input, &args.output, &options) {
         Ok(converted) => {
             let lost: Vec<_> = converted.warnings.iter().filter(|warning| warning.lost).collect();
-            lost.iter().for_each(|warning| say(&format!("{}: left undone: {warning}", args.input.display())));
+            lost.iter().for_each(|warning| say(&format!("{}: problem: {warning}", args.input.display())));
             if lost.is_empty() { Exit::Clean } else { Exit::Undone }
         }
         Err(error) => {

@@ -41,9 +41,9 @@ fn text(info: &Info) -> String {
         out,
         "gaps      vertex to curve {:.3e} mm{}, curve to surface {:.3e} mm{} (measured at samples)",
         gap.vertex_to_curve,
-        at(&gap.vertex_to_curve_at),
+        at(gap.vertex_to_curve_at.as_deref()),
         gap.curve_to_surface,
-        at(&gap.curve_to_surface_at)
+        at(gap.curve_to_surface_at.as_deref())
     );
     parts(&mut out, info);
     let _ = writeln!(out, "\ntree");
@@ -71,8 +71,9 @@ fn parts(out: &mut String, info: &Info) {
         count(part.vertices, "vertices");
         count(part.tessellated_triangles, "triangles in the file");
         let uncertainty = part.uncertainty.map_or_else(String::new, |u| format!("; uncertainty {u}"));
+        let entity = part.entity.as_deref().unwrap_or_default();
         let name = if part.name.is_empty() { "(no name)" } else { &part.name };
-        let _ = writeln!(out, "  {name} {} × {}: {}{uncertainty}", part.id, part.instances, holds.join(", "));
+        let _ = writeln!(out, "  {name} {entity} × {}: {}{uncertainty}", part.instances, holds.join(", "));
         if let Some(survey) = part.sewing.as_ref().filter(|_| part.open_edges > 0) {
             sewing(out, part, survey);
         }
@@ -82,11 +83,11 @@ fn parts(out: &mut String, info: &Info) {
 /// What `--sew auto` would do, and the histogram it rests on.
 fn sewing(out: &mut String, part: &PartInfo, survey: &GapSurvey) {
     let shared = if part.topology { "" } else { ", no edge is shared by two faces" };
-    let sure = if survey.clear { "" } else { ", the valley is not clear" };
+    let sure = if survey.unambiguous { "" } else { ", ambiguous" };
     let _ = writeln!(
         out,
-        "    open edges {}{shared}; --sew auto: {:.3e} mm (resolution {:.1e}, valley {:.1e} to {:.1e}{sure})",
-        part.open_edges, survey.tolerance, survey.resolution, survey.valley[0], survey.valley[1]
+        "    open edges {}{shared}; --sew auto: {:.3e} mm (resolution {:.1e}, no gaps from {:.1e} to {:.1e}{sure})",
+        part.open_edges, survey.tolerance, survey.resolution, survey.empty_range[0], survey.empty_range[1]
     );
     let bins: Vec<String> =
         survey.histogram.iter().map(|(_, below, count)| format!("<{below:.0e}: {count}")).collect();
@@ -118,31 +119,17 @@ fn lists(out: &mut String, info: &Info) {
     if !info.loose.is_empty() {
         let _ = writeln!(out, "\nloose items: belong to no face");
         for item in &info.loose {
-            let _ = writeln!(out, "  {} {} {} in {}", item.kind, item.id, item.name, item.part);
+            let _ = writeln!(out, "  {} {} {} in {}", item.kind, item.entity.as_deref().unwrap_or_default(), item.name, item.part);
         }
     }
-    if !info.failed.is_empty() {
-        let _ = writeln!(out, "\nfaces that could not be understood");
-        for face in &info.failed {
-            let _ = writeln!(out, "  {} (line {}) in {}: {}", face.id, face.line, face.part, face.reason);
-        }
-    }
-    if !info.warnings.is_empty() {
-        let _ = writeln!(out, "\nwarnings");
-        for warning in &info.warnings {
-            let _ = writeln!(out, "  {}{}", place(&warning.id, warning.line), warning.message);
+    if !info.problems.is_empty() {
+        let _ = writeln!(out, "\nproblems");
+        for problem in &info.problems {
+            let _ = writeln!(out, "  {}: {}", problem.severity.name(), problem.sentence());
         }
     }
 }
 
-fn at(id: &str) -> String {
-    if id.is_empty() { String::new() } else { format!(" at {id}") }
-}
-
-fn place(id: &str, line: u32) -> String {
-    match (id.is_empty(), line) {
-        (true, 0) => String::new(),
-        (true, line) => format!("line {line}: "),
-        (false, line) => format!("{id} (line {line}): "),
-    }
+fn at(entity: Option<&str>) -> String {
+    entity.map_or_else(String::new, |entity| format!(" at {entity}"))
 }

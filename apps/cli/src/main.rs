@@ -1,6 +1,7 @@
 //! The command line `chordal`: arguments in, exit codes out; everything else is the facade's.
 
 mod args;
+mod batch;
 mod bench;
 mod check;
 mod compare;

@@ -1,12 +1,14 @@
 //! `chordal mesh`: one job per input.
 
 use crate::args::MeshArgs;
+use crate::batch::{Batch, BatchFailure};
 use crate::device::Device;
 use crate::exit::{Exit, say};
 use crate::guard::guarded;
 use crate::outputs::{Outputs, plan};
 use crate::progress::Bar;
-use chordal::report::{Batch, BatchFailure};
+use chordal::brep::Severity;
+use chordal::brep::issue::words::{count, length_mm, number};
 use chordal::{Cancel, Job, Report, Strategy};
 use std::path::Path;
 
@@ -87,47 +89,50 @@ fn mesh_one(
     Ok(report)
 }
 
-/// Echoes the resolved options and the result.
+/// Prints the options, the result and the problems.
 fn tell(args: &MeshArgs, report: &Report) {
     let input = &report.input.path;
     if !args.quiet {
-        let options = &report.options;
-        let angle = options.angle.map_or_else(|| "off".into(), |a| format!("{a:.4}°"));
-        let max_edge = options.max_edge.map_or_else(String::new, |l| format!(", longest edge {l} mm"));
-        let tolerance = options.tolerance;
-        say(&format!(
-            "{input}: tolerance {} = {tolerance:.6} mm, angle {angle}{max_edge}, {} bound, {} threads",
-            options.tolerance_asked, options.bound, report.threads
-        ));
-        let error = report
-            .proven_error
-            .map_or_else(|| "nothing proven".into(), |e| format!("proven error {e:.6} mm"));
-        say(&format!(
-            "{input}: {} faces, {} triangles, {error}, gap {:.2e} mm, {}, {:.2} s",
-            report.faces.total,
-            report.triangles,
-            report.max_gap,
-            if report.watertight { "watertight" } else { "not watertight" },
-            report.seconds.total
-        ));
-        for warning in report.warnings.iter().take(WARNINGS_SHOWN) {
-            let id = if warning.id.is_empty() {
-                String::new()
-            } else {
-                format!(" {} (line {}):", warning.id, warning.line)
-            };
-            say(&format!("{input}: warning:{id} {}", warning.message));
+        say(&format!("{input}: {}", options_line(report)));
+        say(&format!("{input}: {}", result_line(report)));
+        let warnings: Vec<_> = report.warnings().filter(|p| p.severity == Severity::Warning).collect();
+        for warning in warnings.iter().take(WARNINGS_SHOWN) {
+            say(&format!("{input}: warning: {}", warning.sentence()));
         }
-        if report.warnings.len() > WARNINGS_SHOWN {
-            say(&format!(
-                "{input}: {} more warnings are in the report",
-                report.warnings.len() - WARNINGS_SHOWN
-            ));
+        if warnings.len() > WARNINGS_SHOWN {
+            let more = count(warnings.len() - WARNINGS_SHOWN, "more warning", "more warnings");
+            say(&format!("{input}: {more} (see --report)"));
         }
     }
-    for sentence in &report.undone {
-        say(&format!("{input}: left undone: {sentence}"));
+    for sentence in report.error_sentences() {
+        say(&format!("{input}: problem: {sentence}"));
     }
+}
+
+/// `tolerance 0.1 % = 0.2 mm, angle 20°, proven bound, 4 threads`.
+fn options_line(report: &Report) -> String {
+    let options = &report.options;
+    let tolerance = match options.tolerance_requested.ends_with('%') {
+        true => format!("{} = {}", options.tolerance_requested, length_mm(options.tolerance)),
+        false => length_mm(options.tolerance),
+    };
+    let angle = options.angle.map_or_else(|| "off".into(), |a| format!("{}°", number(a, 4)));
+    let max_edge = options.max_edge.map_or_else(String::new, |l| format!(", longest edge {}", length_mm(l)));
+    let threads = count(report.threads, "thread", "threads");
+    format!("tolerance {tolerance}, angle {angle}{max_edge}, {} bound, {threads}", options.bound)
+}
+
+/// `28 faces, 412 triangles, all 28 faces proven within 0.05 mm, gap 0 mm, watertight, 0.02 s`.
+fn result_line(report: &Report) -> String {
+    format!(
+        "{}, {}, {}, gap {}, {}, {:.2} s",
+        count(report.faces.total, "face", "faces"),
+        count(report.triangles, "triangle", "triangles"),
+        report.proof_sentence(),
+        length_mm(report.max_edge_gap),
+        report.closedness_sentence(),
+        report.seconds.total
+    )
 }
 
 /// Quadrilaterals are one strategy's, and not every format has them.

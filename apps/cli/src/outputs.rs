@@ -1,7 +1,7 @@
 //! Which file every input is written to.
 
 use crate::args::MeshArgs;
-use chordal::report::Batch;
+use crate::batch::Batch;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;

@@ -40,7 +40,7 @@ mod drawing {
                 if !args.quiet {
                     tell(args, &rendered);
                 }
-                rendered.report.undone.iter().for_each(|undone| say(undone));
+                rendered.report.error_sentences().iter().for_each(|problem| say(problem));
                 if rendered.report.clean { Exit::Clean } else { Exit::Undone }
             }
             Err(error) => {

@@ -32,10 +32,10 @@ fn text(found: &MeshSewingReport) -> String {
     let how = match &found.auto {
         None => String::new(),
         Some(auto) => {
-            let sure = if auto.clear { "" } else { ", not clear" };
+            let sure = if auto.unambiguous { "" } else { ", ambiguous" };
             format!(
-                " (resolution {:.1e}, valley {:.1e} to {:.1e}{sure})",
-                auto.resolution, auto.valley[0], auto.valley[1]
+                " (resolution {:.1e}, no gaps from {:.1e} to {:.1e}{sure})",
+                auto.resolution, auto.empty_range[0], auto.empty_range[1]
             )
         }
     };

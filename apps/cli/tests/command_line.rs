@@ -97,21 +97,21 @@ fn the_report_says_what_was_done() {
     let line = "mesh {} -o {} --report {} --tolerance 50um --angle off --max-edge 1cm --jobs 2";
     run(line, &[&model("bracket"), &out, &report]).exits(&[0]);
     let report = json(&report);
-    assert_eq!(report["schema"], "chordal-report/1");
+    assert_eq!(report["schema"], "chordal-report/2");
     assert_eq!(report["options"]["tolerance"], 0.05);
     assert_eq!(report["options"]["angle"], serde_json::Value::Null);
     assert_eq!(report["options"]["max_edge"], 10.0);
     assert_eq!(report["threads"], 2);
     assert_eq!(report["faces"]["total"], 28);
     assert_eq!(report["faces"]["meshed"], 28);
-    assert_eq!(report["watertight"], true);
+    assert_eq!(report["closedness"], "closed");
     assert_eq!(report["clean"], true);
     assert!(report["proven_error"].as_f64().is_some_and(|e| e > 0.0 && e <= 0.05));
-    assert_eq!(report["face_list"].as_array().map(Vec::len), Some(28));
-    for field in ["max_gap", "lower_bound", "rounds", "triangles", "vertices", "open_edges", "peak_memory"] {
+    assert_eq!(report["faces_detail"].as_array().map(Vec::len), Some(28));
+    for field in ["max_edge_gap", "lower_bound", "edge_rounds", "triangles", "vertices", "open_edges", "peak_memory"] {
         assert!(report[field].is_number(), "{field}");
     }
-    for stage in ["read", "heal", "edges", "faces", "stitch", "audit", "write"] {
+    for stage in ["read", "trim", "edges", "faces", "stitch", "audit", "write"] {
         assert!(report["seconds"][stage].is_number(), "{stage}");
     }
 }
@@ -157,7 +157,7 @@ fn many_inputs_go_to_a_folder_without_collisions() {
     run(line, &[&model("bracket"), &twin, &model("sphere_full"), Path::new(&slash), &report]).exits(&[0]);
     assert_eq!(files_in(&out), ["Bracket-2.ply", "bracket.ply", "sphere_full.ply"]);
     let batch = json(&report);
-    assert_eq!(batch["schema"], "chordal-report-batch/1");
+    assert_eq!(batch["schema"], "chordal-report-batch/2");
     assert_eq!(batch["reports"].as_array().map(Vec::len), Some(3));
 }
 
@@ -182,7 +182,7 @@ fn one_bad_input_of_many_is_exit_1_and_with_strict_nothing_at_all() {
 }
 
 #[test]
-fn strict_writes_nothing_where_anything_is_left_undone() {
+fn strict_writes_nothing_where_there_is_a_problem() {
     let folder = tempfile::tempdir().expect("a folder");
     let broken = corpus().join("bad/missing_entity.step");
     let (out, report) = (folder.path().join("out.ply"), folder.path().join("r.json"));
@@ -192,11 +192,14 @@ fn strict_writes_nothing_where_anything_is_left_undone() {
     assert_eq!(files_in(folder.path()), [""; 0]);
 
     let ran = run("mesh {} -o {} --report {}", &[&broken, &out, &report]).exits(&[1]);
-    assert!(ran.stderr.contains("left undone") && ran.stderr.contains('#'), "{}", ran.stderr);
+    assert!(ran.stderr.contains("problem: ") && ran.stderr.contains('#'), "{}", ran.stderr);
     let report = json(&report);
     assert_eq!(report["clean"], false);
-    let failed = &report["faces"]["failed"][0];
-    assert!(failed["id"].as_str().is_some_and(|id| id.starts_with('#')) && failed["line"].as_u64() > Some(0));
+    assert_eq!((&report["faces"]["failed"], &report["missing_faces"]), (&1.into(), &1.into()));
+    let failed = &report["problems"][0];
+    assert!(failed["entity"].as_str().is_some_and(|id| id.starts_with('#')) && failed["line"].as_u64() > Some(0));
+    let face = failed["face"].as_u64().expect("the index of a face") as usize;
+    assert_eq!((&failed["severity"], &report["faces_detail"][face]["status"]), (&"error".into(), &"failed".into()));
 }
 
 #[test]

@@ -25,8 +25,8 @@ fn exchange_files_end_as_their_index_says() {
             continue;
         }
         let report = json(&report);
-        if ran.code == 0 && row.get("closed") == "yes" && report["watertight"] != true {
-            wrong.push(format!("{name}: not watertight"));
+        if ran.code == 0 && row.get("closed") == "yes" && report["closedness"] != "closed" {
+            wrong.push(format!("{name}: not closed"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

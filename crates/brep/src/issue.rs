@@ -4,25 +4,30 @@
 //! severity, and the entity of the file that it concerns. The sentence that people read is made here and nowhere
 //! else, so that wording, plurals and units are the same in every stage.
 //!
-//! Each stage has an enum of its own ([`ReadIssue`], [`MeshIssue`], [`AuditIssue`]) in a file of its own. The fields
-//! of a variant are values, never prepared text.
+//! Each stage has an enum of its own ([`ReadIssue`], [`MeshIssue`], [`AuditIssue`], [`ResultIssue`]) in a file of its
+//! own. The fields of a variant are values, never prepared text; they are serialised into the report as they are.
 
 mod auditing;
 mod meshing;
 mod reading;
+mod result;
 pub mod words;
 
 pub use auditing::{AuditIssue, MeshDefect, PolylineDefect};
 pub use meshing::MeshIssue;
 pub use reading::ReadIssue;
+pub use result::ResultIssue;
 
 use crate::Source;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What an issue means for the result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// Something was repaired or noticed; the result is complete.
+    #[default]
     Note,
     /// Something was ignored or changed that may matter to the user; no geometry is missing.
     Warning,
@@ -53,15 +58,28 @@ pub enum IssueKind {
     Mesh(MeshIssue),
     /// Found by the audit of the finished mesh.
     Audit(AuditIssue),
+    /// Found when the results of all stages are added up, or while the mesh is written.
+    Result(ResultIssue),
 }
 
 impl IssueKind {
+    /// The stage that found it: `read`, `mesh`, `audit` or `result`.
+    pub fn stage(&self) -> &'static str {
+        match self {
+            IssueKind::Read(_) => "read",
+            IssueKind::Mesh(_) => "mesh",
+            IssueKind::Audit(_) => "audit",
+            IssueKind::Result(_) => "result",
+        }
+    }
+
     /// A stable name for programs to match, such as `unknown-surface`.
     pub fn code(&self) -> &'static str {
         match self {
             IssueKind::Read(kind) => kind.code(),
             IssueKind::Mesh(kind) => kind.code(),
             IssueKind::Audit(kind) => kind.code(),
+            IssueKind::Result(kind) => kind.code(),
         }
     }
 }
@@ -72,6 +90,7 @@ impl fmt::Display for IssueKind {
             IssueKind::Read(kind) => kind.fmt(f),
             IssueKind::Mesh(kind) => kind.fmt(f),
             IssueKind::Audit(kind) => kind.fmt(f),
+            IssueKind::Result(kind) => kind.fmt(f),
         }
     }
 }
@@ -91,6 +110,12 @@ impl From<MeshIssue> for IssueKind {
 impl From<AuditIssue> for IssueKind {
     fn from(kind: AuditIssue) -> Self {
         IssueKind::Audit(kind)
+    }
+}
+
+impl From<ResultIssue> for IssueKind {
+    fn from(kind: ResultIssue) -> Self {
+        IssueKind::Result(kind)
     }
 }
 

@@ -14,7 +14,7 @@ pub mod winding;
 
 pub use assembly::{Model, Node, Placement};
 pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};
-pub use issue::{AuditIssue, Issue, IssueKind, MeshIssue, ReadIssue, Severity};
+pub use issue::{AuditIssue, Issue, IssueKind, MeshIssue, ReadIssue, ResultIssue, Severity};
 pub use part::{
     Body, BodyKind, Coedge, Color, Edge, Face, FaceGeometry, Loop, LooseItem, LooseKind, Part, Pcurve, Shell,
     TessellatedItem, Vertex,

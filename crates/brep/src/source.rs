@@ -1,9 +1,10 @@
 //! Where in the file something came from.
 
+use serde::Serialize;
 use std::fmt;
 
 /// An entity of the input file: its number (`#id`; 0 where the format has none) and its line (from 1; 0 unknown).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub struct Source {
     pub entity: u64,
     pub line: u32,

@@ -5,8 +5,10 @@
 //! the mesh to the nearest fine triangle, right to within the fine mesh's proven error. Where every face is proven, branch and
 //! bound between the two meshes also says what no point can exceed.
 
-use crate::job::{MeshedPart, mesh_parts, read_model};
-use crate::names::{entity_id, face_kind};
+use crate::job::read_model;
+use crate::meshed_part::{MeshedPart, mesh_parts};
+use crate::names::face_kind;
+use crate::report::entity_name;
 use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_audit::{TriangleTree, largest_distance};
@@ -157,7 +159,7 @@ fn face_distances(
                     .map(|p| mesh.distance(world.transform_point3(p), f64::INFINITY))
                     .fold(0.0, f64::max);
                 let worst = WorstFace {
-                    id: entity_id(face.source),
+                    id: entity_name(face.source).unwrap_or_default(),
                     kind: face_kind(face).into(),
                     part: part.name.clone(),
                     distance,

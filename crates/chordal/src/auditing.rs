@@ -1,6 +1,6 @@
 //! The one place where the facade meets the audit.
 
-use crate::job::MeshedPart;
+use crate::meshed_part::MeshedPart;
 use crate::resolve::Resolved;
 use chordal_audit::{AuditOptions, Claim, Problem, Subject, audit_part};
 use chordal_brep::{AuditIssue, Issue, Model, Part};
@@ -13,18 +13,20 @@ pub(crate) struct AuditedPart {
     pub shells: Vec<AuditedShell>,
     pub degenerate_triangles: usize,
     pub duplicate_triangles: usize,
-    /// What is wrong with it.
-    pub problems: Vec<Issue>,
+    /// What is wrong with it, with the index of the face where it is one.
+    pub problems: Vec<(Option<u32>, Issue)>,
 }
 
 /// One shell.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct AuditedShell {
     pub closed_in_file: bool,
     pub open_edges: usize,
     pub inconsistent_edges: usize,
-    /// Faces that should have triangles and have none.
-    pub missing_faces: usize,
+    /// Faces with triangles.
+    pub meshed_faces: usize,
+    /// Indices of the faces that should have triangles and have none.
+    pub missing_faces: Vec<usize>,
 }
 
 /// Audits every part that is placed. What the audit proves of a face less tightly than the mesher takes the place of the
@@ -63,7 +65,8 @@ fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options, scale: f64) ->
         closed_in_file: audited.closed_in_file,
         open_edges: audited.open_edges,
         inconsistent_edges: audited.inconsistent_edges,
-        missing_faces: shell.faces.iter().filter(|f| is_missing(meshed, f.index())).count(),
+        meshed_faces: shell.faces.iter().filter(|f| has_triangles(meshed, f.index())).count(),
+        missing_faces: shell.faces.iter().map(|f| f.index()).filter(|&f| is_missing(meshed, f)).collect(),
     });
     AuditedPart {
         shells: shells.collect(),
@@ -73,7 +76,7 @@ fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options, scale: f64) ->
             .problems
             .into_iter()
             .filter(|p| !is_reported(p, &claims, options))
-            .map(Problem::into_issue)
+            .map(issue)
             .collect(),
     }
 }
@@ -87,9 +90,21 @@ fn claim(of_face: &FaceReport) -> Claim {
     }
 }
 
+fn issue(problem: Problem) -> (Option<u32>, Issue) {
+    let face = match problem.subject {
+        Subject::Face(face) => Some(face),
+        _ => None,
+    };
+    (face, problem.into_issue())
+}
+
+fn has_triangles(meshed: &MeshedPart, face: usize) -> bool {
+    meshed.mesh.faces.get(face).is_some_and(|m| !m.triangles.is_empty())
+}
+
 fn is_missing(meshed: &MeshedPart, face: usize) -> bool {
     let zero_area = meshed.report.faces.get(face).is_some_and(|r| r.zero_area);
-    !zero_area && meshed.mesh.faces.get(face).is_none_or(|m| m.triangles.is_empty())
+    !zero_area && !has_triangles(meshed, face)
 }
 
 /// The report states it elsewhere: it counts shells that are not watertight, and the mesher itself reports errors

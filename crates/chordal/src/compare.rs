@@ -3,7 +3,9 @@
 mod measure;
 mod plot;
 
-use crate::job::{MeshedPart, mesh_parts, read_model_with};
+use crate::job::read_model_with;
+use crate::meshed_part::{MeshedPart, mesh_parts};
+use crate::report::StageEntry;
 use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_brep::Model;
@@ -65,16 +67,6 @@ pub struct PhaseSeconds {
     pub traversal: f64,
     /// Trimming and triangulation.
     pub triangulation: f64,
-}
-
-/// One part of the tessellator.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, serde::Deserialize)]
-pub struct StageEntry {
-    pub name: String,
-    /// Faces for which it ran; a face that is placed several times counts once. None for parts that work on edges.
-    pub faces: usize,
-    /// What it made in all of them.
-    pub count: usize,
 }
 
 /// Meshes the model in `input` once for every strategy and bound. The lower bound is that of the first row: it is a
@@ -159,24 +151,10 @@ fn row(model: &Model, resolved: &Resolved, parts: &[MeshedPart], fewest: f64) ->
         }
         row.measured_error =
             row.measured_error.max(scale * measure::largest_deviation(&model.parts[i], &part.mesh));
-        add_stages(&mut row.stages, part);
+        part.add_stages(&mut row.stages);
     }
     row.ratio = row.triangles as f64 / fewest.max(1.0);
     row
-}
-
-/// Books the parts that ran for the faces of one part of the model.
-pub(crate) fn add_stages(stages: &mut Vec<StageEntry>, part: &MeshedPart) {
-    let of_faces = part.report.faces.iter().flat_map(|f| f.trace.parts()).map(|p| (1, p));
-    for (faces, (name, count)) in part.report.edge_trace.parts().map(|p| (0, p)).chain(of_faces) {
-        match stages.iter_mut().find(|s| s.name == name) {
-            Some(stage) => {
-                stage.faces += faces;
-                stage.count += count;
-            }
-            None => stages.push(StageEntry { name: name.into(), faces, count }),
-        }
-    }
 }
 
 impl Comparison {

@@ -3,7 +3,7 @@
 //! Cells are grey, triangles thin, the boundary is bold. Each direction is stretched to the face's own extent.
 
 use crate::JobError;
-use crate::job::MeshedPart;
+use crate::meshed_part::MeshedPart;
 use chordal_mesh::FaceMesh;
 use chordal_nurbs::{DVec2, UvBox};
 use std::collections::BTreeSet;

@@ -27,8 +27,8 @@ pub enum JobError {
     TooLarge { path: PathBuf, at: String, reach: f64 },
     #[error("{}: none of {faces} faces could be meshed: {first}", path.display())]
     NothingMeshed { path: PathBuf, faces: usize, first: String },
-    #[error("{}: nothing is written because of --strict: {}", path.display(), first_of(.undone))]
-    Strict { path: PathBuf, undone: Vec<String> },
+    #[error("{}: nothing was written because of --strict: {}", path.display(), first_of(.problems))]
+    Strict { path: PathBuf, problems: Vec<String> },
     #[error("{}: cancelled", path.display())]
     Cancelled { path: PathBuf },
     #[error("no pool of {threads} threads: {reason}")]
@@ -55,9 +55,9 @@ fn but_holds(loose: &usize) -> String {
     }
 }
 
-fn first_of(undone: &[String]) -> String {
-    match undone {
-        [] => "something was left undone".into(),
+fn first_of(problems: &[String]) -> String {
+    match problems {
+        [] => "the mesh has problems".into(),
         [one] => one.clone(),
         [first, rest @ ..] => format!("{first} (and {} more)", rest.len()),
     }

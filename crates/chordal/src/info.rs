@@ -1,12 +1,12 @@
 //! What is in a CAD file, before anything is meshed.
 
 use crate::gaps::{Gap, gaps};
-use crate::names::{entity_id, face_kind, loose_kind};
+use crate::account::{loose, warning};
+use crate::names::face_kind;
 use crate::placement::{PartUse, part_uses};
-use crate::report::{FailedFace, LooseEntry, WarningEntry};
-use crate::sewing::GapSurvey;
+use crate::report::{GapSurvey, LooseEntry, Problem, entity_name};
 use crate::tight_box::{edge_box, tight_box};
-use chordal_brep::{BodyKind, FaceGeometry, Model, NodeId, Part};
+use chordal_brep::{BodyKind, FaceGeometry, Issue, Model, NodeId, Part, ReadIssue, Severity};
 use chordal_sew::{gap_survey, has_topology, open_edges};
 use chordal_tessellate::Cancel;
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// The name and version of the schema of [`Info`].
-pub const INFO_SCHEMA: &str = "chordal-info/1";
+pub const INFO_SCHEMA: &str = "chordal-info/2";
 
 /// What a face may take while the box is measured.
 const FACE_TIMEOUT: Duration = Duration::from_secs(10);
@@ -36,29 +36,30 @@ pub struct Info {
     pub faces: usize,
     /// As placed.
     pub faces_by_kind: BTreeMap<&'static str, usize>,
-    /// Faces that could not be understood.
-    pub failed: Vec<FailedFace>,
+    /// Faces that could not be read, as placed; `problems` says why.
+    pub failed_faces: usize,
     pub max_gap: GapInfo,
     pub parts: Vec<PartInfo>,
     pub tree: Vec<NodeInfo>,
     pub loose: Vec<LooseEntry>,
-    pub warnings: Vec<WarningEntry>,
+    /// What the reader repaired, guessed or dropped, and the faces that it could not read.
+    pub problems: Vec<Problem>,
 }
 
 /// The largest gaps, each with the entity it was found at; measured at samples.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct GapInfo {
     pub vertex_to_curve: f64,
-    pub vertex_to_curve_at: String,
+    pub vertex_to_curve_at: Option<String>,
     pub curve_to_surface: f64,
-    pub curve_to_surface_at: String,
+    pub curve_to_surface_at: Option<String>,
 }
 
 /// One part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartInfo {
     pub name: String,
-    pub id: String,
+    pub entity: Option<String>,
     pub instances: usize,
     pub solids: usize,
     pub sheets: usize,
@@ -110,13 +111,13 @@ pub fn info(model: &Model) -> Info {
         r#box: (!whole.is_empty()).then(|| [whole.min.to_array(), whole.max.to_array()]),
         diagonal: whole.diagonal(),
         faces: model.placed_faces(),
+        failed_faces: faces_by_kind.get("unknown").copied().unwrap_or(0),
         faces_by_kind,
-        failed: failed(model, &uses),
         max_gap: largest(&parts),
         parts,
         tree: model.roots.iter().map(|&root| node_info(model, root)).collect(),
         loose: loose(model),
-        warnings: warnings(model),
+        problems: model.warnings.iter().map(warning).chain(failed(model)).collect(),
     }
 }
 
@@ -126,7 +127,7 @@ fn part_info(part: &Part, part_use: &PartUse) -> PartInfo {
     let length = |gap: Gap| gap.distance * part_use.scale;
     PartInfo {
         name: part.name.clone(),
-        id: entity_id(part.source),
+        entity: entity_name(part.source),
         instances: part_use.instances,
         solids: bodies(BodyKind::Solid),
         sheets: bodies(BodyKind::Sheet),
@@ -140,9 +141,9 @@ fn part_info(part: &Part, part_use: &PartUse) -> PartInfo {
         uncertainty: part.uncertainty,
         gaps: GapInfo {
             vertex_to_curve: length(gaps.vertex_to_curve),
-            vertex_to_curve_at: entity_id(gaps.vertex_to_curve.source),
+            vertex_to_curve_at: entity_name(gaps.vertex_to_curve.source),
             curve_to_surface: length(gaps.curve_to_surface),
-            curve_to_surface_at: entity_id(gaps.curve_to_surface.source),
+            curve_to_surface_at: entity_name(gaps.curve_to_surface.source),
         },
         open_edges: open_edges(part),
         topology: has_topology(part),
@@ -165,24 +166,19 @@ fn largest(parts: &[PartInfo]) -> GapInfo {
     found
 }
 
-fn failed(model: &Model, uses: &[PartUse]) -> Vec<FailedFace> {
-    let mut failed = Vec::new();
-    for (part, part_use) in model.parts.iter().zip(uses) {
-        for face in &part.faces {
-            if let FaceGeometry::Failed(reason) = &face.geometry {
-                failed.push(FailedFace {
-                    id: entity_id(face.source),
-                    line: face.source.line,
-                    kind: face_kind(face).into(),
-                    name: face.name.clone(),
-                    part: part.name.clone(),
-                    instances: part_use.instances,
-                    reason: reason.clone(),
-                });
+/// The faces that could not be read.
+fn failed(model: &Model) -> impl Iterator<Item = Problem> {
+    let of_part = |part: &Part| -> Vec<Problem> {
+        let problem = |face: &chordal_brep::Face| match &face.geometry {
+            FaceGeometry::Surface(_) => None,
+            FaceGeometry::Failed(reason) => {
+                let issue = Issue::new(Severity::Error, face.source, ReadIssue::Other(reason.clone()));
+                Some(Problem::new(&issue).in_part(&part.name))
             }
-        }
-    }
-    failed
+        };
+        part.faces.iter().filter_map(problem).collect()
+    };
+    model.parts.iter().flat_map(of_part)
 }
 
 /// A tree of ordinary depth; readers refuse cycles.
@@ -193,29 +189,4 @@ fn node_info(model: &Model, id: NodeId) -> NodeInfo {
         part: node.part.map(|p| p.index()),
         children: node.children.iter().map(|&child| node_info(model, child)).collect(),
     }
-}
-
-/// Curves and points that belong to no face.
-pub(crate) fn loose(model: &Model) -> Vec<LooseEntry> {
-    let of_part = |part: &Part| -> Vec<LooseEntry> {
-        let entry = |item: &chordal_brep::LooseItem| LooseEntry {
-            id: entity_id(item.source),
-            kind: loose_kind(item.kind).into(),
-            name: item.name.clone(),
-            part: part.name.clone(),
-        };
-        part.loose.iter().map(entry).collect()
-    };
-    model.parts.iter().flat_map(of_part).collect()
-}
-
-/// What the reader had to say.
-pub(crate) fn warnings(model: &Model) -> Vec<WarningEntry> {
-    let entry = |w: &chordal_brep::Warning| WarningEntry {
-        id: entity_id(w.source),
-        line: w.source.line,
-        message: w.message.clone(),
-        lost: w.lost,
-    };
-    model.warnings.iter().map(entry).collect()
 }

@@ -5,24 +5,24 @@
 //!              └ here    └──────────────────── chordal_tessellate, once per part ─────────────────────┘
 //! ```
 
-use crate::account::{Ledger, account};
+use crate::account::{Findings, Ledger, account};
 use crate::area::area;
 use crate::auditing::audit_parts;
 use crate::drawing::write_drawings;
-use crate::progress::FaceCounter;
+use crate::meshed_part::mesh_parts;
+use crate::process::peak_memory;
+use crate::report::InputReport;
 use crate::resolve::{Resolved, resolve};
 use crate::scene::scene;
 use crate::sewing::sew_model;
 use crate::{JobError, JobOptions, OnProgress, Progress, Report};
 use chordal_brep::{FaceGeometry, Model};
-use chordal_mesh::{PartMesh, Scene};
+use chordal_mesh::Scene;
 use chordal_read::ReadOptions;
-use chordal_tessellate::{Cancel, PartReport, tessellate_part};
+use chordal_tessellate::Cancel;
 use chordal_write::{Format, WriteOptions, WriteSummary, write_scene};
-use rayon::prelude::*;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// One file to be meshed.
 #[derive(Clone)]
@@ -94,13 +94,6 @@ pub struct Outcome {
     pub report: Report,
 }
 
-/// The mesh of one part, and what is known about it; lengths in the part's own units.
-#[derive(Clone, Debug, Default)]
-pub struct MeshedPart {
-    pub mesh: Arc<PartMesh>,
-    pub report: PartReport,
-}
-
 /// Runs the whole job.
 ///
 /// # Errors
@@ -142,15 +135,16 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     let audits = ledger.time(|s| &mut s.audit, || audit_parts(&model, &resolved, &mut parts));
     job.check_cancelled()?;
 
-    // 6. Account: what was done, what is proven, what was left undone.
-    let mut report = account(job, &model, &sewn, &resolved, &parts, &audits);
+    // 6. Account: what was done, what is proven, what went wrong.
+    let found = Findings { model: &model, sewn: &sewn, resolved: &resolved, parts: &parts, audits: &audits };
+    let mut report = account(input_report(job, &model, &resolved), &job.options, &found);
     if report.triangles == 0 {
-        let (faces, first) = (report.faces.total, report.undone.into_iter().next());
+        let (faces, first) = (report.faces.total, report.error_sentences().into_iter().next());
         let first = first.unwrap_or_else(|| "they have no area, or are never placed".into());
         return Err(JobError::NothingMeshed { path: job.input.clone(), faces, first });
     }
     if job.options.strict && !report.clean {
-        return Err(JobError::Strict { path: job.input.clone(), undone: report.undone });
+        return Err(JobError::Strict { path: job.input.clone(), problems: report.error_sentences() });
     }
 
     // 7. Write.
@@ -161,10 +155,22 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     if let (Some(output), Some(format)) = (&job.output, format) {
         let summary = ledger
             .time(|s| &mut s.write, || write(&scene, output, format, &job.options, resolved.tolerance))?;
-        report.add_output(output, format, &summary);
+        report.add_output(&output.display().to_string(), format, &summary);
     }
     ledger.close(&mut report);
+    report.peak_memory = peak_memory();
+    report.threads = rayon::current_num_threads();
     Ok(Outcome { model, scene, report })
+}
+
+fn input_report(job: &Job, model: &Model, resolved: &Resolved) -> InputReport {
+    InputReport {
+        path: job.input.display().to_string(),
+        bytes: std::fs::metadata(&job.input).map_or(0, |m| m.len()),
+        format: model.schema.clone(),
+        unit: model.unit.clone(),
+        diagonal: resolved.diagonal,
+    }
 }
 
 /// Reads a model that holds something to mesh.
@@ -207,32 +213,6 @@ fn something_to_mesh(model: &Model, input: &Path) -> Result<(), JobError> {
     }
     let faces = model.parts.iter().map(|part| part.faces.len()).sum();
     Err(JobError::NothingMeshed { path: input.to_owned(), faces, first: first.unwrap_or_default() })
-}
-
-/// Meshes every placed part once, in parallel; the result does not depend on the number of threads.
-///
-/// One per part of the model, in its order; a part that is never placed has an empty mesh.
-pub fn mesh_parts(
-    model: &Model,
-    resolved: &Resolved,
-    cancel: &Cancel,
-    tell: &(dyn Fn(Progress) + Sync),
-) -> Vec<MeshedPart> {
-    let counter = FaceCounter::start(model, resolved, tell);
-    model
-        .parts
-        .par_iter()
-        .zip(&resolved.parts)
-        .zip(&resolved.uses)
-        .map(|((part, options), part_use)| {
-            if part_use.instances == 0 {
-                return MeshedPart::default();
-            }
-            let of_part = counter.part(part);
-            let (mesh, report) = tessellate_part(part, options, cancel, &|done| of_part.done(done));
-            MeshedPart { mesh: Arc::new(mesh), report }
-        })
-        .collect()
 }
 
 /// A pool of `threads` threads, or of one per core.

@@ -5,7 +5,7 @@
 //!
 //! let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.05));
 //! let report = chordal::run(&Job::new("../../corpus/bracket.step").with_options(options))?.report;
-//! assert!(report.clean && report.watertight);
+//! assert!(report.clean && report.closedness == Some(chordal::Closedness::Closed));
 //! assert!(report.proven_error.is_some_and(|error| error <= 0.05));
 //! println!("{} triangles for {} faces", report.triangles, report.faces.total);
 //! # Ok::<(), chordal::JobError>(())
@@ -20,6 +20,7 @@ mod analytic;
 mod area;
 mod auditing;
 mod check;
+mod clock;
 mod compare;
 mod convert;
 mod drawing;
@@ -32,6 +33,7 @@ mod info;
 mod job;
 mod levels;
 mod mesh_sewing;
+mod meshed_part;
 mod names;
 mod options;
 mod papers;
@@ -51,13 +53,14 @@ mod whole_file;
 pub use against::{AgainstReport, WorstFace};
 pub use area::area;
 pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
-pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, StageEntry, compare, plot};
+pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, compare, plot};
 pub use convert::{ConvertOptions, Converted, convert};
 pub use error::JobError;
 #[cfg(feature = "gpu")]
 pub use gpu_evaluator::GpuEvaluator;
 pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};
-pub use job::{Job, MeshedPart, Outcome, mesh_parts, read_model, read_model_with, run, thread_pool};
+pub use job::{Job, Outcome, read_model, read_model_with, run, thread_pool};
+pub use meshed_part::{MeshedPart, mesh_parts};
 pub use mesh_sewing::{LevelEntry, MeshSewing, MeshSewingReport, OpenBorderEntry, SEW_SCHEMA, sew_mesh_file};
 pub use options::JobOptions;
 pub use papers::{LoopEntry, PaperTables, SurfaceEntry, paper_tables};
@@ -67,9 +70,9 @@ pub use progress::{OnProgress, Progress};
 pub use quantity::{QuantityError, Tolerance, parse_angle, parse_length};
 #[cfg(feature = "gpu")]
 pub use render::{Evaluated, RenderError, RenderJob, RenderMode, Rendered, render};
-pub use report::{REPORT_SCHEMA, Report};
+pub use report::{Closedness, GapSurvey, OpenEntry, Problem, REPORT_SCHEMA, Report, SewingEntry, StageEntry};
 pub use resolve::{Resolved, resolve};
-pub use sewing::{GapSurvey, OpenEntry, Sew, SewingEntry, sew_model};
+pub use sewing::{Sew, sew_model};
 pub use tight_box::{TightBox, edge_box, tight_box};
 pub use whole_file::write_whole;
 

@@ -1,7 +1,8 @@
 //! Sewing of mesh files along their borders.
 
 use crate::JobError;
-use crate::sewing::{GapSurvey, Sew};
+use crate::report::GapSurvey;
+use crate::sewing::Sew;
 use chordal_mesh::{PassThrough, Scene, SceneNode, ScenePart, TriangleSoup, import_mesh};
 use chordal_sew::{MeshSewReport, SewTolerance, SewnMesh, sew_mesh};
 use chordal_write::{Format, Unit, WriteOptions, write_scene};

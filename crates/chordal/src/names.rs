@@ -1,13 +1,8 @@
 //! How reports name things of the model.
 
-use chordal_brep::{Face, FaceGeometry, LooseKind, Source};
+use chordal_brep::{Face, FaceGeometry, LooseKind};
 use chordal_nurbs::{Surface, SurfaceKind};
 use chordal_tessellate::Bound;
-
-/// `#123`, or the empty text where the format has no numbers.
-pub(crate) fn entity_id(source: Source) -> String {
-    if source.entity == 0 { String::new() } else { format!("#{}", source.entity) }
-}
 
 /// The kind of a face's surface.
 pub(crate) fn face_kind(face: &Face) -> &'static str {

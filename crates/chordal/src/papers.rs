@@ -2,7 +2,8 @@
 //! surface method with and without coherence (Tables 3 and 4).
 
 use crate::compare::placed;
-use crate::job::{MeshedPart, mesh_parts, read_model};
+use crate::job::read_model;
+use crate::meshed_part::{MeshedPart, mesh_parts};
 use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_brep::{FaceGeometry, Model};

@@ -1,236 +1,340 @@
-//! The report: what was asked, what was done, what is proven, what was left undone. `docs/report.md` documents it.
+//! The report: what was requested, what was done, what is proven, what went wrong. `docs/report.md` documents it.
 //!
-//! Lengths are millimetres, angles degrees, times seconds. A number that is not known is `null`.
+//! Lengths are millimetres, angles degrees, times seconds. A value that is not known is `null`.
 
-pub use crate::compare::StageEntry;
-use crate::sewing::SewingEntry;
+mod closedness;
+mod problem;
+mod sewing;
+mod summary;
+
+pub use closedness::Closedness;
+pub use problem::Problem;
+pub use sewing::{GapSurvey, OpenEntry, SewingEntry};
+
+use chordal_brep::{Severity, Source};
 use serde::{Deserialize, Serialize};
 
-/// The name and version of the report's schema. The number rises when a field changes its meaning or goes.
-pub const REPORT_SCHEMA: &str = "chordal-report/1";
+/// The name and version of the report's schema. The number rises when a field changes its meaning or is removed.
+pub const REPORT_SCHEMA: &str = "chordal-report/2";
 
-/// Everything that is to be said about one job.
+/// The report of one model.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Report {
+    /// [`REPORT_SCHEMA`].
     pub schema: String,
-    /// The version of the program.
+    /// The version of Chordal.
     pub version: String,
+    /// The input file.
     pub input: InputReport,
+    /// The options with every default resolved.
     pub options: OptionsReport,
-    /// Nothing was left undone: exit code 0.
+    /// No problem is an error: exit code 0.
     pub clean: bool,
-    /// One sentence for everything that was left undone; empty where `clean`.
-    pub undone: Vec<String>,
-    /// Largest proven two-sided distance between the exact faces and the mesh **as written**, without the gap; `null`
-    /// where a face has no proof.
+    /// Every problem of every stage, in the order of the stages.
+    pub problems: Vec<Problem>,
+    /// Largest proven two-sided distance between an exact face and its triangles **as written**, over the faces that
+    /// have a proof; without the gap. `null` where no face has a proof.
     pub proven_error: Option<f64>,
-    /// Largest proven distance between an edge and its chords: what `options.boundary_tolerance` bounds;
-    /// `null` where one is not known.
+    /// Faces with triangles and without a proof; `proven_error` does not speak of them.
+    pub unproven_faces: Vec<FaceName>,
+    /// Largest proven distance between an edge and its chords, which `options.boundary_tolerance` bounds; `null` where
+    /// it is not known of an edge.
     pub boundary_error: Option<f64>,
-    /// Largest distance of a mesh vertex from the exact surface of a face that uses it: what the file is loose by.
-    pub max_gap: f64,
-    /// Every shell that the file calls closed has no open and no inconsistent edge.
-    pub watertight: bool,
-    /// Edges with one triangle in shells that the file calls closed, instances counted.
+    /// Largest distance between a mesh vertex and the exact surface of a face that uses it: the inaccuracy of the
+    /// file.
+    pub max_edge_gap: f64,
+    /// Whether the surface is closed; `null` where no face was meshed, so that nothing was examined.
+    pub closedness: Option<Closedness>,
+    /// Mesh edges with one triangle in shells that the file declares closed, as placed.
     pub open_edges: usize,
-    /// Edges whose two triangles run the same way, or with more than two, in shells that the file calls closed.
+    /// Mesh edges whose triangles do not pair up in opposite directions in shells that the file declares closed, as
+    /// placed.
     pub inconsistent_edges: usize,
+    /// Faces without triangles in shells that the file declares closed, as placed.
+    pub missing_faces: usize,
+    /// The shells, as placed.
     pub shells: ShellTotals,
     /// As placed: a part placed twice counts twice.
     pub triangles: usize,
-    /// As placed, shared by identity.
+    /// As placed; a vertex shared by several triangles counts once.
     pub vertices: usize,
+    /// The faces, as placed.
     pub faces: FaceTotals,
-    /// The area of the triangles in mm², as placed, those that were in the file not counted.
+    /// The area of the triangles in mm², as placed, without those that were in the file already.
     pub area: f64,
     /// The fewest triangles that the tolerance allows (docs/report.md), as placed.
     pub lower_bound: f64,
-    /// Rounds in which faces asked for finer edges, the most of any part.
-    pub rounds: usize,
+    /// How often faces requested finer edges, the most of any part.
+    pub edge_rounds: usize,
+    /// Every part of the file.
     pub parts: Vec<PartEntry>,
-    /// What sewing did, of every part that was sewn.
+    /// What sewing did, for every part that was sewn.
     pub sewing: Vec<SewingEntry>,
     /// Curves and points of the file that belong to no face.
     pub loose: Vec<LooseEntry>,
-    /// Triangles that were in the file already and were passed through: nothing is proven about them.
-    pub passed_through: Vec<PassedThroughEntry>,
-    pub warnings: Vec<WarningEntry>,
+    /// Triangles that were in the file already and were copied: nothing is proven about them.
+    pub tessellated_input: Vec<TessellatedInput>,
+    /// The written file.
     pub output: Option<OutputReport>,
+    /// Time per stage.
     pub seconds: Seconds,
-    /// Which parts of the tessellator ran, in the order of the faces.
+    /// Which methods of the mesher ran, in the order of the faces.
     pub stages: Vec<StageEntry>,
-    /// Largest resident memory of the process so far, in bytes.
+    /// Largest resident memory of the process so far, in bytes; `null` where the system does not tell.
     pub peak_memory: Option<u64>,
+    /// Threads that meshed.
     pub threads: usize,
-    pub face_list: Vec<FaceEntry>,
+    /// Every face once, in the order of the parts.
+    pub faces_detail: Vec<FaceEntry>,
 }
 
 /// The input file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct InputReport {
+    /// The path, or the name that the caller gave.
     pub path: String,
+    /// The size of the file.
     pub bytes: u64,
     /// Format and version as the file states them.
-    pub schema: String,
+    pub format: String,
     /// The file's unit of length.
     pub unit: String,
-    /// Diagonal of the tight axis-aligned box of the whole placed model; `null` where nobody asked for it.
+    /// Diagonal of the tight axis-aligned box of the whole placed model; `null` unless the tolerance is a percentage.
     pub diagonal: Option<f64>,
 }
 
 /// The options with every default resolved.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct OptionsReport {
+    /// Largest distance between mesh and surface.
     pub tolerance: f64,
-    /// As it was asked for ("0.1 %").
-    pub tolerance_asked: String,
-    /// Of the edges; the same as `tolerance` unless another was asked for.
+    /// As the caller wrote it ("0.1 %").
+    pub tolerance_requested: String,
+    /// Largest distance between edges and their chords; equals `tolerance` unless the caller gave another one.
     pub boundary_tolerance: f64,
     /// `null`: no limit.
     pub angle: Option<f64>,
+    /// `null`: no limit.
     pub max_edge: Option<f64>,
+    /// How points were placed and connected.
     pub strategy: String,
     /// How edges became polylines.
-    #[serde(default)]
     pub edge_method: String,
-    /// Merge tolerance of sewing as asked for ("auto where loose", "auto", "off", "0.01 mm").
-    pub sew: String,
+    /// "auto-if-unshared", "auto", "off" or a length.
+    pub sewing: String,
+    /// "proven" or "estimated".
     pub bound: String,
+    /// `null`: no limit.
     pub face_timeout: Option<f64>,
-    pub strict: bool,
 }
 
-/// Shells, instances counted.
+/// The shells of the model that have a surface, as placed; `total = closed + open_by_design + leaking`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ShellTotals {
+    /// All shells.
     pub total: usize,
-    /// Those that the file calls closed.
+    /// Those that the file declares closed.
     pub closed_in_file: usize,
-    /// Those of the closed ones that are watertight in the mesh.
-    pub watertight: usize,
+    /// Those that are closed in the mesh.
+    pub closed: usize,
+    /// Those that the file declares closed and that are not closed in the mesh.
+    pub leaking: usize,
+    /// Those with a border that the file does not declare closed.
+    pub open_by_design: usize,
+    /// Faces with triangles that belong to no shell.
+    pub free_faces: usize,
 }
 
-/// Faces; `total = meshed + zero_area.instances + failed.instances`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// The faces of the model, as placed; `total = meshed + failed + zero_area`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct FaceTotals {
-    /// Every instance counted.
+    /// All faces.
     pub total: usize,
-    /// Every instance counted.
+    /// Faces with triangles.
     pub meshed: usize,
+    /// Faces with triangles whose error is proven.
+    pub proven: usize,
+    /// Faces without triangles, or without good enough ones.
+    pub failed: usize,
+    /// Faces without an area at the accuracy of the file: they need no triangles.
+    pub zero_area: usize,
     /// Faces of the file, each counted once.
     pub distinct: usize,
-    pub failed: Vec<FailedFace>,
-    /// Faces without an area at the model's own accuracy: they have no triangles and need none.
-    pub zero_area: Vec<FailedFace>,
 }
 
-/// A face without triangles, or without good enough ones.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FailedFace {
+/// A face of the file.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct FaceName {
     /// The entity in the file, `#123`.
-    pub id: String,
-    pub line: u32,
-    pub kind: String,
-    pub name: String,
+    pub entity: Option<String>,
+    /// The line in the file, from 1.
+    pub line: Option<u32>,
+    /// The name of its part.
     pub part: String,
+    /// How often its part is placed.
     pub instances: usize,
-    pub reason: String,
 }
 
 /// One part of the file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct PartEntry {
+    /// Its name.
     pub name: String,
-    pub id: String,
+    /// The entity in the file, `#123`.
+    pub entity: Option<String>,
     /// How often it is placed; a part that is never placed is not meshed.
     pub instances: usize,
-    /// The tolerance in the part's own units: the asked one over the largest scale among its placements.
+    /// The tolerance in the part's own units: the one of the model over the largest scale among its placements.
     pub tolerance: f64,
+    /// Its faces.
     pub faces: usize,
+    /// Its triangles.
     pub triangles: usize,
+    /// Its vertices.
     pub vertices: usize,
-    pub rounds: usize,
+    /// How often its faces requested finer edges.
+    pub edge_rounds: usize,
+    /// Mesh edges with one triangle, in all of its shells.
     pub open_edges: usize,
+    /// Mesh edges whose triangles do not pair up in opposite directions, in all of its shells.
     pub inconsistent_edges: usize,
+    /// Triangles without area.
     pub degenerate_triangles: usize,
+    /// Triangles over the same three vertices as another one.
     pub duplicate_triangles: usize,
-    /// What the audit found wrong, one sentence each.
-    pub problems: Vec<String>,
 }
 
 /// A curve or point that belongs to no face.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct LooseEntry {
-    pub id: String,
+    /// The entity in the file, `#123`.
+    pub entity: Option<String>,
     /// "wire" or "point".
     pub kind: String,
+    /// Its name.
     pub name: String,
+    /// The name of its part.
     pub part: String,
 }
 
-/// Triangles of the file.
+/// Triangles that were in the file already.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PassedThroughEntry {
-    pub id: String,
+#[non_exhaustive]
+pub struct TessellatedInput {
+    /// The entity in the file, `#123`.
+    pub entity: Option<String>,
+    /// Its name.
     pub name: String,
+    /// The name of its part.
     pub part: String,
+    /// How many triangles.
     pub triangles: usize,
+    /// How often they are placed.
     pub instances: usize,
-}
-
-/// Something in the file that was repaired, guessed or left out.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct WarningEntry {
-    pub id: String,
-    pub line: u32,
-    pub message: String,
-    /// Part of the file's shape may be missing because of this: the job is not clean.
-    pub lost: bool,
 }
 
 /// The written file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct OutputReport {
+    /// Its path, or `-` for standard output.
     pub path: String,
+    /// Its format.
     pub format: String,
+    /// Its size.
     pub bytes: u64,
-    /// Largest distance that the format's numbers move a vertex by; contained in `proven_error`.
+    /// Largest distance by which the numbers of the format moved a vertex; contained in `proven_error`.
     pub rounding: f64,
 }
 
-/// Seconds per stage. Those of heal, edges, faces and stitch are summed over threads, the others are wall time.
+/// Seconds per stage. Those of `trim`, `edges`, `faces` and `stitch` are summed over threads, the others are wall
+/// time. All are zero where the platform has no clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Seconds {
+    /// Reading the file.
     pub read: f64,
-    /// Sewing of loose faces.
+    /// Sewing faces that share no edges.
     pub sew: f64,
-    /// Resolving the tolerance: the box of the model.
+    /// Measuring the model, so that a percentage becomes a length.
     pub resolve: f64,
-    pub heal: f64,
+    /// Repairing the trimming loops of faces in the plane of parameters.
+    pub trim: f64,
+    /// Sampling edges.
     pub edges: f64,
+    /// Placing points, triangulating and proving.
     pub faces: f64,
+    /// Joining the faces of a part.
     pub stitch: f64,
+    /// Checking the mesh.
     pub audit: f64,
+    /// Writing the file.
     pub write: f64,
-    /// Wall time of the whole job.
+    /// The whole.
     pub total: f64,
+}
+
+/// What became of a face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaceStatus {
+    /// It has triangles.
+    #[default]
+    Meshed,
+    /// It has no triangles, or none that are good enough; a problem says why.
+    Failed,
+    /// It has no area at the accuracy of the file, so it needs no triangles.
+    ZeroArea,
 }
 
 /// One face, once however often it is placed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct FaceEntry {
-    pub id: String,
-    pub line: u32,
+    /// The entity in the file, `#123`.
+    pub entity: Option<String>,
+    /// The line in the file, from 1.
+    pub line: Option<u32>,
+    /// The kind of its surface.
     pub kind: String,
+    /// Its name.
+    pub name: String,
+    /// The name of its part.
     pub part: String,
+    /// How often its part is placed.
     pub instances: usize,
+    /// What became of it.
+    pub status: FaceStatus,
+    /// How many triangles it has.
     pub triangles: usize,
     /// In the placement with the largest scale; `null` where nothing is proven.
     pub proven_error: Option<f64>,
+    /// In the placement with the largest scale; `null` where it is not known.
     pub gap: Option<f64>,
-    /// Which bound proved it.
+    /// Which bound proved the error.
     pub bound: String,
+    /// The fewest triangles that the tolerance allows.
     pub lower_bound: f64,
+}
+
+/// One method of the mesher.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct StageEntry {
+    /// Its name.
+    pub name: String,
+    /// Faces for which it ran, each counted once however often it is placed; 0 for methods that work on edges.
+    pub faces: usize,
+    /// What it made in all of them.
+    pub count: usize,
 }
 
 impl Report {
@@ -240,40 +344,24 @@ impl Report {
         text.push('\n');
         text
     }
-}
 
-/// The name and version of the schema of a report about several inputs.
-pub const BATCH_SCHEMA: &str = "chordal-report-batch/1";
+    /// The problems that are errors.
+    pub fn errors(&self) -> impl Iterator<Item = &Problem> {
+        self.problems.iter().filter(|p| p.severity == Severity::Error)
+    }
 
-/// The reports of several inputs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Batch {
-    pub schema: String,
-    /// Those that were written, in the order of the inputs.
-    pub reports: Vec<Report>,
-    /// Those of which nothing was written.
-    pub failed: Vec<BatchFailure>,
-}
-
-/// An input of which nothing was written.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct BatchFailure {
-    pub input: String,
-    /// One sentence.
-    pub error: String,
-}
-
-impl Default for Batch {
-    fn default() -> Self {
-        Self { schema: BATCH_SCHEMA.into(), reports: Vec::new(), failed: Vec::new() }
+    /// The problems that are no errors.
+    pub fn warnings(&self) -> impl Iterator<Item = &Problem> {
+        self.problems.iter().filter(|p| p.severity != Severity::Error)
     }
 }
 
-impl Batch {
-    /// As JSON, with a line break at the end.
-    pub fn to_json(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self).expect("a batch has string keys only");
-        text.push('\n');
-        text
-    }
+/// `#123`; `None` where the format has no numbers.
+pub(crate) fn entity_name(source: Source) -> Option<String> {
+    (source.entity > 0).then(|| format!("#{}", source.entity))
+}
+
+/// From 1; `None` where the format has no lines.
+pub(crate) fn line_number(source: Source) -> Option<u32> {
+    (source.line > 0).then_some(source.line)
 }

@@ -21,8 +21,8 @@ fn faults(name: &str, percent: f64, methods: &[&str]) -> Vec<String> {
     let fault = |method: &&str| {
         let of_name = EdgeMethod::from_name(method).expect("a known name");
         match mesh(name, percent, of_name) {
-            Ok(report) if report.clean && report.watertight == default.watertight => None,
-            Ok(report) => Some(format!("{name}, {method}: {}", report.undone.join("; "))),
+            Ok(report) if report.clean && report.closedness == default.closedness => None,
+            Ok(report) => Some(format!("{name}, {method}: {}", report.error_sentences().join("; "))),
             Err(error) => Some(format!("{name}, {method}: {error}")),
         }
     };

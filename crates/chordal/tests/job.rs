@@ -1,6 +1,6 @@
 //! The facade as a library user meets it.
 
-use chordal::{Cancel, Job, JobError, JobOptions, Progress, Tolerance};
+use chordal::{Closedness, Cancel, Job, JobError, JobOptions, Progress, Tolerance};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
@@ -54,8 +54,8 @@ fn parts_get_their_tolerance_from_their_largest_placement() {
 #[test]
 fn a_face_that_ends_at_a_crease_gets_two_triangles_per_panel() {
     let outcome = chordal::run(&Job::new(corpus("folded_strip"))).expect("a mesh");
-    assert!(outcome.report.clean, "{:?}", outcome.report.undone);
-    assert_eq!((outcome.report.triangles, outcome.report.rounds), (6, 0));
+    assert!(outcome.report.clean, "{:?}", outcome.report.error_sentences());
+    assert_eq!((outcome.report.triangles, outcome.report.edge_rounds), (6, 0));
 }
 
 /// The border of an offset of a free surface has no proven bound: that is said, and no edge is halved for it without end.
@@ -63,9 +63,36 @@ fn a_face_that_ends_at_a_crease_gets_two_triangles_per_panel() {
 fn edges_of_which_nothing_is_proven_end() {
     let path = corpus("bracket").with_file_name("iges").join("untrimmed.igs");
     let report = chordal::run(&Job::new(path)).expect("a mesh").report;
-    assert!(report.undone.iter().any(|u| u.contains("not proven")), "{:?}", report.undone);
+    assert!(report.error_sentences().iter().any(|u| u.contains("not proven") && u.contains("1 of 8 faces")), "{:?}", report.error_sentences());
     assert!(report.triangles < 20_000, "{}", report.triangles);
-    assert_eq!(report.faces.failed, []);
+    assert_eq!(report.faces.failed, 0);
+    // One face without a proof takes nothing from the others.
+    assert_eq!((report.faces.proven, report.unproven_faces.len()), (7, 1));
+    assert!(report.proven_error.is_some_and(|e| e <= report.options.tolerance), "{:?}", report.proven_error);
+    let sentence = report.proof_sentence();
+    assert!(sentence.starts_with("7 of 8 faces proven within ") && sentence.contains("; 1 unproven: #"), "{sentence}");
+}
+
+/// Only a mesh all of whose shells are closed is called watertight.
+#[test]
+fn closed_open_and_leaking_are_three_words() {
+    let folder = corpus("bracket").with_file_name("");
+    let judged = |name: &str| {
+        let report = chordal::run(&Job::new(folder.join(name))).expect("a mesh").report;
+        (report.closedness, report.closedness_sentence(), report.error_sentences())
+    };
+    let (closed, sentence, errors) = judged("bracket.step");
+    assert_eq!((closed, sentence.as_str(), errors.len()), (Some(Closedness::Closed), "watertight", 0));
+    for sheet in ["iges/bounded.igs", "folded_strip.step"] {
+        let (open, sentence, errors) = judged(sheet);
+        assert_eq!((open, sentence.as_str(), errors.len()), (Some(Closedness::OpenByDesign), "open by design", 0));
+    }
+    let (unknown, sentence, _) = judged("iv/polygons.iv");
+    assert_eq!((unknown, sentence.as_str()), (None, "closedness not examined"));
+    let (leaking, sentence, errors) = judged("bad/missing_entity.step");
+    assert_eq!((leaking, sentence.as_str()), (Some(Closedness::Leaking), "leaking (1 of 1 closed shell)"));
+    let leak = errors.iter().find(|e| e.contains("leaks")).expect("a sentence about the leak");
+    assert!(leak.contains("1 missing face (#"), "{leak}");
 }
 
 #[test]
@@ -90,7 +117,7 @@ fn no_corner_stays_shut() {
             let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent)).with_angle(angle);
             let report =
                 chordal::run(&Job::new(corpus("crescent")).with_options(options)).expect("a mesh").report;
-            assert!(report.clean, "{percent} %, {angle:?}: {:?}", report.undone);
+            assert!(report.clean, "{percent} %, {angle:?}: {:?}", report.error_sentences());
         }
     }
 }
@@ -111,9 +138,9 @@ fn where_no_facet_keeps_the_angle_the_tolerance_comes_first() {
     );
     std::fs::write(&path, text).expect("written");
     let report = chordal::run(&Job::new(path)).expect("a mesh").report;
-    assert!(report.proven_error.is_some_and(|e| e <= report.options.tolerance), "{:?}", report.undone);
+    assert!(report.proven_error.is_some_and(|e| e <= report.options.tolerance), "{:?}", report.error_sentences());
     assert!(report.triangles < 1_000, "{}", report.triangles);
-    assert!(report.undone.iter().any(|u| u.contains("along a mesh edge")), "{:?}", report.undone);
+    assert!(report.error_sentences().iter().any(|u| u.contains("along a mesh edge")), "{:?}", report.error_sentences());
 }
 
 /// Weights from 0.001 to 1000: bounds are wild over the chords and beside them, and there are only so many rounds to make edges finer.
@@ -124,7 +151,7 @@ fn wild_bounds_leave_rounds_enough() {
             let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent)).with_angle(angle);
             let job = Job::new(corpus("weight_range")).with_options(options);
             let report = chordal::run(&job).expect("a mesh").report;
-            assert!(report.clean, "{percent} %, {angle:?}: {:?}", report.undone);
+            assert!(report.clean, "{percent} %, {angle:?}: {:?}", report.error_sentences());
         }
     }
 }

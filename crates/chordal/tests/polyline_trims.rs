@@ -95,7 +95,7 @@ fn a_polyline_is_subdivided_as_finely_as_a_curve() {
         assert!((counts[0] + 4) as f64 >= 4.0 * fewest_chords(0.01), "{strategy:?}: {counts:?}");
         assert!(counts.iter().all(|c| c.abs_diff(counts[0]) <= 4), "{strategy:?}: {counts:?}");
         for outcome in &meshes {
-            assert!(outcome.report.clean, "{strategy:?}: {:?}", outcome.report.undone);
+            assert!(outcome.report.clean, "{strategy:?}: {:?}", outcome.report.error_sentences());
             assert!(outcome.report.boundary_error.is_some_and(|e| e > 0.002 && e <= 0.01));
             assert!(outcome.report.proven_error <= Some(0.01));
         }
@@ -118,6 +118,6 @@ fn chords_pass_over_the_points_of_dense_polylines() {
     let samples = samples_of_edges(&outcome);
     // The ellipse of semi-axes 4 and 2.5 has ∮√κ ds = 11.06; over √8ε that is 39 chords, and the sheet adds to them.
     assert!((39..DENSE / 5).contains(&samples), "{samples}");
-    assert!(outcome.report.clean, "{:?}", outcome.report.undone);
+    assert!(outcome.report.clean, "{:?}", outcome.report.error_sentences());
     assert!(outcome.report.boundary_error.is_some_and(|e| e > 0.001 && e <= 0.01));
 }

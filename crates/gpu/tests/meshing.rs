@@ -35,8 +35,8 @@ fn a_device_changes_no_promise() {
             let (points, dispatches) = device.work();
             assert!(points > before.0 && dispatches > before.1, "{name} {strategy}: the device did nothing");
             assert_eq!(
-                (report.clean, report.watertight, report.faces.total),
-                (host.clean, host.watertight, host.faces.total),
+                (report.clean, report.closedness, report.faces.total),
+                (host.clean, host.closedness, host.faces.total),
                 "{name} {strategy}"
             );
             let proven = report.proven_error.expect("every face is proven");

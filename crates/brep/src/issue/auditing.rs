@@ -5,10 +5,11 @@
 
 use super::words::{count, length_mm, number};
 use crate::Source;
+use serde::Serialize;
 use std::fmt;
 
 /// Found by the audit of a finished mesh. Lengths are millimetres, angles are radians.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum AuditIssue {
     /// The arrays of the mesh contradict each other or the model; nothing else can be checked.
@@ -138,7 +139,7 @@ pub enum AuditIssue {
 }
 
 /// How a mesh contradicts itself or its model.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum MeshDefect {
     /// The number of origins is not that of positions.
@@ -184,7 +185,7 @@ pub enum MeshDefect {
 }
 
 /// How the polyline of an edge is broken.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum PolylineDefect {
     /// It has a single point.

@@ -1,9 +1,10 @@
 //! What can be found while a face or an edge is meshed.
 
+use serde::Serialize;
 use std::fmt;
 
 /// Found while a face or an edge is meshed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum MeshIssue {
     /// A sentence without a variant of its own yet. The variant goes when every stage is typed.

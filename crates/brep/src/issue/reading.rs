@@ -1,9 +1,10 @@
 //! What can be found while a file is read.
 
+use serde::Serialize;
 use std::fmt;
 
 /// Found while a file is read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum ReadIssue {
     /// A sentence without a variant of its own yet. The variant goes when every stage is typed.

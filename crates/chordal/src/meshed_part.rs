@@ -1,0 +1,59 @@
+//! The parts of a model, each meshed once however often it is placed.
+
+use crate::progress::{FaceCounter, Progress};
+use crate::report::StageEntry;
+use crate::resolve::Resolved;
+use chordal_brep::Model;
+use chordal_mesh::PartMesh;
+use chordal_tessellate::{Cancel, PartReport, tessellate_part};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// The mesh of one part, and what is known about it; lengths in the part's own units.
+#[derive(Clone, Debug, Default)]
+pub struct MeshedPart {
+    pub mesh: Arc<PartMesh>,
+    pub report: PartReport,
+}
+
+impl MeshedPart {
+    /// Adds the methods that ran for the faces and edges of the part.
+    pub(crate) fn add_stages(&self, stages: &mut Vec<StageEntry>) {
+        let of_faces = self.report.faces.iter().flat_map(|f| f.trace.parts()).map(|p| (1, p));
+        for (faces, (name, count)) in self.report.edge_trace.parts().map(|p| (0, p)).chain(of_faces) {
+            match stages.iter_mut().find(|s| s.name == name) {
+                Some(stage) => {
+                    stage.faces += faces;
+                    stage.count += count;
+                }
+                None => stages.push(StageEntry { name: name.into(), faces, count }),
+            }
+        }
+    }
+}
+
+/// Meshes every placed part once, in parallel; the result does not depend on the number of threads.
+///
+/// One per part of the model, in its order; a part that is never placed has an empty mesh.
+pub fn mesh_parts(
+    model: &Model,
+    resolved: &Resolved,
+    cancel: &Cancel,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Vec<MeshedPart> {
+    let counter = FaceCounter::start(model, resolved, tell);
+    model
+        .parts
+        .par_iter()
+        .zip(&resolved.parts)
+        .zip(&resolved.uses)
+        .map(|((part, options), part_use)| {
+            if part_use.instances == 0 {
+                return MeshedPart::default();
+            }
+            let of_part = counter.part(part);
+            let (mesh, report) = tessellate_part(part, options, cancel, &|done| of_part.done(done));
+            MeshedPart { mesh: Arc::new(mesh), report }
+        })
+        .collect()
+}
