@@ -119,7 +119,14 @@ fn lists(out: &mut String, info: &Info) {
     if !info.loose.is_empty() {
         let _ = writeln!(out, "\nloose items: belong to no face");
         for item in &info.loose {
-            let _ = writeln!(out, "  {} {} {} in {}", item.kind, item.entity.as_deref().unwrap_or_default(), item.name, item.part);
+            let _ = writeln!(
+                out,
+                "  {} {} {} in {}",
+                item.kind,
+                item.entity.as_deref().unwrap_or_default(),
+                item.name,
+                item.part
+            );
         }
     }
     if !info.problems.is_empty() {

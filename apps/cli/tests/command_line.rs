@@ -108,7 +108,9 @@ fn the_report_says_what_was_done() {
     assert_eq!(report["clean"], true);
     assert!(report["proven_error"].as_f64().is_some_and(|e| e > 0.0 && e <= 0.05));
     assert_eq!(report["faces_detail"].as_array().map(Vec::len), Some(28));
-    for field in ["max_edge_gap", "lower_bound", "edge_rounds", "triangles", "vertices", "open_edges", "peak_memory"] {
+    for field in
+        ["max_edge_gap", "lower_bound", "edge_rounds", "triangles", "vertices", "open_edges", "peak_memory"]
+    {
         assert!(report[field].is_number(), "{field}");
     }
     for stage in ["read", "trim", "edges", "faces", "stitch", "audit", "write"] {
@@ -197,9 +199,14 @@ fn strict_writes_nothing_where_there_is_a_problem() {
     assert_eq!(report["clean"], false);
     assert_eq!((&report["faces"]["failed"], &report["missing_faces"]), (&1.into(), &1.into()));
     let failed = &report["problems"][0];
-    assert!(failed["entity"].as_str().is_some_and(|id| id.starts_with('#')) && failed["line"].as_u64() > Some(0));
+    assert!(
+        failed["entity"].as_str().is_some_and(|id| id.starts_with('#')) && failed["line"].as_u64() > Some(0)
+    );
     let face = failed["face"].as_u64().expect("the index of a face") as usize;
-    assert_eq!((&failed["severity"], &report["faces_detail"][face]["status"]), (&"error".into(), &"failed".into()));
+    assert_eq!(
+        (&failed["severity"], &report["faces_detail"][face]["status"]),
+        (&"error".into(), &"failed".into())
+    );
 }
 
 #[test]

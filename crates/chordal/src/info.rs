@@ -1,7 +1,7 @@
 //! What is in a CAD file, before anything is meshed.
 
-use crate::gaps::{Gap, gaps};
 use crate::account::{loose, warning};
+use crate::gaps::{Gap, gaps};
 use crate::names::face_kind;
 use crate::placement::{PartUse, part_uses};
 use crate::report::{GapSurvey, LooseEntry, Problem, entity_name};

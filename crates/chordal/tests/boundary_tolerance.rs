@@ -43,7 +43,11 @@ fn coarser_edges_save_triangles_and_facets_away_from_them_keep_their_tolerance()
         let fine = mesh(name, Strategy::Default, 0.05, None);
         let coarse = mesh(name, Strategy::Default, 0.05, Some(0.5));
         let asked = &coarse.options;
-        assert!(coarse.clean && coarse.closedness == Some(Closedness::Closed), "{name}: {:?}", coarse.error_sentences());
+        assert!(
+            coarse.clean && coarse.closedness == Some(Closedness::Closed),
+            "{name}: {:?}",
+            coarse.error_sentences()
+        );
         assert!(coarse.boundary_error <= Some(asked.boundary_tolerance), "{name}");
         assert!(coarse.proven_error <= Some(asked.boundary_tolerance), "{name}");
         assert!(coarse.triangles < fine.triangles, "{name}: {} {}", coarse.triangles, fine.triangles);

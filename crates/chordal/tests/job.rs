@@ -1,6 +1,6 @@
 //! The facade as a library user meets it.
 
-use chordal::{Closedness, Cancel, Job, JobError, JobOptions, Progress, Tolerance};
+use chordal::{Cancel, Closedness, Job, JobError, JobOptions, Progress, Tolerance};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
@@ -63,14 +63,21 @@ fn a_face_that_ends_at_a_crease_gets_two_triangles_per_panel() {
 fn edges_of_which_nothing_is_proven_end() {
     let path = corpus("bracket").with_file_name("iges").join("untrimmed.igs");
     let report = chordal::run(&Job::new(path)).expect("a mesh").report;
-    assert!(report.error_sentences().iter().any(|u| u.contains("not proven") && u.contains("1 of 8 faces")), "{:?}", report.error_sentences());
+    assert!(
+        report.error_sentences().iter().any(|u| u.contains("not proven") && u.contains("1 of 8 faces")),
+        "{:?}",
+        report.error_sentences()
+    );
     assert!(report.triangles < 20_000, "{}", report.triangles);
     assert_eq!(report.faces.failed, 0);
     // One face without a proof takes nothing from the others.
     assert_eq!((report.faces.proven, report.unproven_faces.len()), (7, 1));
     assert!(report.proven_error.is_some_and(|e| e <= report.options.tolerance), "{:?}", report.proven_error);
     let sentence = report.proof_sentence();
-    assert!(sentence.starts_with("7 of 8 faces proven within ") && sentence.contains("; 1 unproven: #"), "{sentence}");
+    assert!(
+        sentence.starts_with("7 of 8 faces proven within ") && sentence.contains("; 1 unproven: #"),
+        "{sentence}"
+    );
 }
 
 /// Only a mesh all of whose shells are closed is called watertight.
@@ -85,7 +92,10 @@ fn closed_open_and_leaking_are_three_words() {
     assert_eq!((closed, sentence.as_str(), errors.len()), (Some(Closedness::Closed), "watertight", 0));
     for sheet in ["iges/bounded.igs", "folded_strip.step"] {
         let (open, sentence, errors) = judged(sheet);
-        assert_eq!((open, sentence.as_str(), errors.len()), (Some(Closedness::OpenByDesign), "open by design", 0));
+        assert_eq!(
+            (open, sentence.as_str(), errors.len()),
+            (Some(Closedness::OpenByDesign), "open by design", 0)
+        );
     }
     let (unknown, sentence, _) = judged("iv/polygons.iv");
     assert_eq!((unknown, sentence.as_str()), (None, "closedness not examined"));
@@ -138,9 +148,17 @@ fn where_no_facet_keeps_the_angle_the_tolerance_comes_first() {
     );
     std::fs::write(&path, text).expect("written");
     let report = chordal::run(&Job::new(path)).expect("a mesh").report;
-    assert!(report.proven_error.is_some_and(|e| e <= report.options.tolerance), "{:?}", report.error_sentences());
+    assert!(
+        report.proven_error.is_some_and(|e| e <= report.options.tolerance),
+        "{:?}",
+        report.error_sentences()
+    );
     assert!(report.triangles < 1_000, "{}", report.triangles);
-    assert!(report.error_sentences().iter().any(|u| u.contains("along a mesh edge")), "{:?}", report.error_sentences());
+    assert!(
+        report.error_sentences().iter().any(|u| u.contains("along a mesh edge")),
+        "{:?}",
+        report.error_sentences()
+    );
 }
 
 /// Weights from 0.001 to 1000: bounds are wild over the chords and beside them, and there are only so many rounds to make edges finer.

@@ -1,6 +1,6 @@
 //! Every strategy on the whole corpus: closed where the file is, within tolerance where proven, and made by its own parts.
 
-use chordal::{Closedness, Bound, Job, JobOptions, Report, Strategy, Tolerance};
+use chordal::{Bound, Closedness, Job, JobOptions, Report, Strategy, Tolerance};
 use std::path::{Path, PathBuf};
 
 fn corpus(name: &str) -> PathBuf {
@@ -34,7 +34,9 @@ fn every_strategy_meshes_what_the_default_meshes() {
         for entry in Strategy::entries().iter().skip(1) {
             match mesh(name, entry.strategy, Bound::Proven) {
                 Ok(report) if report.clean && report.closedness == default.closedness => {}
-                Ok(report) => wrong.push(format!("{name}, {}: {}", entry.name, report.error_sentences().join("; "))),
+                Ok(report) => {
+                    wrong.push(format!("{name}, {}: {}", entry.name, report.error_sentences().join("; ")))
+                }
                 Err(error) => wrong.push(format!("{name}, {}: {error}", entry.name)),
             }
         }
@@ -47,7 +49,12 @@ fn estimated_meshes_are_closed_too_and_not_larger() {
     for name in ["bracket", "fillet_bspline", "torus_hole", "blade"] {
         for entry in Strategy::entries().iter().skip(1) {
             let estimated = mesh(name, entry.strategy, Bound::Estimated).expect("a mesh");
-            assert!(estimated.closedness != Some(Closedness::Leaking), "{name}, {}: {:?}", entry.name, estimated.error_sentences());
+            assert!(
+                estimated.closedness != Some(Closedness::Leaking),
+                "{name}, {}: {:?}",
+                entry.name,
+                estimated.error_sentences()
+            );
             let proven = mesh(name, entry.strategy, Bound::Proven).expect("a mesh");
             // A face of which nothing could be proven is the default's.
             let left = proven.stages.iter().any(|s| s.name.starts_with("faces left to the default"));

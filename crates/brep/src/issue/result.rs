@@ -113,7 +113,8 @@ impl fmt::Display for ResultIssue {
             }
             ResultIssue::EmptyFile => f.write_str("the file holds no triangle"),
             ResultIssue::Sheared { placements } => {
-                let placements = count(*placements, "placement shears its part", "placements shear their parts");
+                let placements =
+                    count(*placements, "placement shears its part", "placements shear their parts");
                 write!(f, "{placements}, which glTF does not allow")
             }
         }

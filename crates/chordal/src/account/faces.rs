@@ -39,7 +39,9 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
     }
     let mut problem = |severity, kind: IssueKind| {
         let issue = Issue::new(severity, face.source, kind);
-        report.problems.push(Problem::new(&issue).in_part(&entry.part.name).of_face(report.faces_detail.len()));
+        report
+            .problems
+            .push(Problem::new(&issue).in_part(&entry.part.name).of_face(report.faces_detail.len()));
     };
     if let Some((severity, kind)) = issue {
         problem(severity, kind);
@@ -89,8 +91,12 @@ fn outcome(face: &Face, of_face: &FaceReport) -> (FaceStatus, Option<(Severity, 
         return (FaceStatus::Failed, Some((Severity::Error, ReadIssue::Other(reason.clone()).into())));
     }
     match &of_face.failed {
-        Some(reason) => (FaceStatus::Failed, Some((Severity::Error, MeshIssue::Other(reason.clone()).into()))),
-        None if of_face.zero_area => (FaceStatus::ZeroArea, Some((Severity::Note, ResultIssue::ZeroArea.into()))),
+        Some(reason) => {
+            (FaceStatus::Failed, Some((Severity::Error, MeshIssue::Other(reason.clone()).into())))
+        }
+        None if of_face.zero_area => {
+            (FaceStatus::ZeroArea, Some((Severity::Note, ResultIssue::ZeroArea.into())))
+        }
         None if of_face.triangles == 0 => {
             (FaceStatus::Failed, Some((Severity::Error, ResultIssue::NoTriangles.into())))
         }

@@ -107,10 +107,19 @@ mod tests {
         let problem =
             Problem::new(&Issue::new(Severity::Error, Source { entity: 42, line: 48 }, kind)).in_part("lid");
         assert_eq!((problem.code.as_str(), problem.stage.as_str()), ("over-tolerance", "result"));
-        assert_eq!((problem.values["error"].as_f64(), problem.values["tolerance"].as_f64()), (Some(0.5), Some(0.25)));
-        assert_eq!(problem.sentence(), "#42 (line 48): the proven error 0.5 mm exceeds the tolerance 0.25 mm");
+        assert_eq!(
+            (problem.values["error"].as_f64(), problem.values["tolerance"].as_f64()),
+            (Some(0.5), Some(0.25))
+        );
+        assert_eq!(
+            problem.sentence(),
+            "#42 (line 48): the proven error 0.5 mm exceeds the tolerance 0.25 mm"
+        );
         let text = serde_json::to_value(&problem).expect("JSON");
-        assert_eq!((&text["severity"], &text["entity"], &text["line"]), (&"error".into(), &"#42".into(), &48.into()));
+        assert_eq!(
+            (&text["severity"], &text["entity"], &text["line"]),
+            (&"error".into(), &"#42".into(), &48.into())
+        );
         assert_eq!(text["face"], Value::Null);
     }
 

@@ -10,10 +10,10 @@ impl Report {
     /// One sentence for every kind of error, in the order of the stages; empty where the report is clean.
     pub fn error_sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        let (of_faces, others): (Vec<&Problem>, Vec<&Problem>) = self.errors().partition(|p| p.face.is_some());
-        let coded = |code: &str| -> Vec<&Problem> {
-            of_faces.iter().copied().filter(|p| p.code == code).collect()
-        };
+        let (of_faces, others): (Vec<&Problem>, Vec<&Problem>) =
+            self.errors().partition(|p| p.face.is_some());
+        let coded =
+            |code: &str| -> Vec<&Problem> { of_faces.iter().copied().filter(|p| p.code == code).collect() };
         let (unproven, over) = (coded("unproven-face"), coded("over-tolerance"));
         let failed: Vec<&Problem> = of_faces
             .iter()
@@ -34,7 +34,11 @@ impl Report {
         }
         let lost: Vec<&Problem> = others.iter().copied().filter(|p| p.stage == "read").collect();
         if let Some(first) = lost.first() {
-            sentences.push(format!("some geometry may be missing: {}{}", first.sentence(), and_more(lost.len())));
+            sentences.push(format!(
+                "some geometry may be missing: {}{}",
+                first.sentence(),
+                and_more(lost.len())
+            ));
         }
         let leaking: Vec<&Problem> = others.iter().copied().filter(|p| p.code == "leaking-shell").collect();
         if let Some(first) = leaking.first() {
@@ -45,7 +49,11 @@ impl Report {
         let of_audit: Vec<&Problem> = self.errors().filter(|p| p.stage == "audit").collect();
         if let Some(first) = of_audit.first() {
             let part = first.part.as_ref().map_or_else(String::new, |part| format!(" of part `{part}`"));
-            sentences.push(format!("the audit{part} found: {}{}", first.sentence(), and_more(of_audit.len())));
+            sentences.push(format!(
+                "the audit{part} found: {}{}",
+                first.sentence(),
+                and_more(of_audit.len())
+            ));
         }
         let known = |p: &Problem| p.stage == "read" || p.stage == "audit" || p.code == "leaking-shell";
         sentences.extend(others.iter().filter(|p| !known(p)).map(|p| p.sentence()));
