@@ -15,7 +15,7 @@ from pathlib import Path
 
 # As wide as the code (`max_width` in rustfmt.toml).
 COLUMNS = 110
-LINK = re.compile(r"\]\(([^)\s]+)\)")
+LINK = re.compile(r"\]\(([^)\s]+)\)|^\[[^\]]+\]: (\S+)$", re.MULTILINE)
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 
 
@@ -53,7 +53,8 @@ def wide_lines(file: Path) -> list[str]:
 def broken_links(file: Path) -> list[str]:
     """One line for each link of the file that leads nowhere."""
     faults = []
-    for target in LINK.findall(FENCE.sub("", file.read_text(encoding="utf-8"))):
+    text = FENCE.sub("", file.read_text(encoding="utf-8"))
+    for target in (inline or reference for inline, reference in LINK.findall(text)):
         if re.match(r"[a-z]+:", target):
             continue
         path, _, anchor = target.partition("#")
