@@ -149,8 +149,8 @@ def differences(first: Run, run: Run) -> list[str]:
     wrong = []
     if a["faces"]["total"] != b["faces"]["total"]:
         wrong.append(f"{b['faces']['total']} faces, not {a['faces']['total']}")
-    if len(a["faces"]["failed"]) != len(b["faces"]["failed"]):
-        wrong.append(f"{len(b['faces']['failed'])} failed faces, not {len(a['faces']['failed'])}")
+    if a["faces"]["failed"] != b["faces"]["failed"]:
+        wrong.append(f"{b['faces']['failed']} failed faces, not {a['faces']['failed']}")
     if a["shells"] != b["shells"]:
         wrong.append(f"shells {b['shells']}, not {a['shells']}")
     if b["proven_error"] is not None and b["proven_error"] > b["options"]["tolerance"]:

@@ -203,7 +203,7 @@ fn the_degree_cap_costs_what_it_says() {
     }
 }
 
-/// How tight the criteria are; run with `--nocapture` for the table that docs/strategies.md quotes.
+/// How tight the criteria are; run with `--nocapture` for the table that docs/methods.md quotes.
 #[test]
 fn tightness_of_the_criteria() {
     println!("degree, rational: median and 95th percentile of bound over sampled distance, point | line");
