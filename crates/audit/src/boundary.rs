@@ -17,6 +17,9 @@ pub(crate) struct Boundary {
     /// Loops that run as the file says, and the other way round.
     pub forward: usize,
     pub backward: usize,
+    /// Of each loop, whether the triangles along it run as the file says; `None` where they do not run along all of
+    /// it.
+    pub directions: Vec<Option<bool>>,
     /// The two sides of a cut that only this face knows.
     pub cuts: Vec<[Half; 2]>,
     /// Half-edges that are neither.
@@ -49,7 +52,8 @@ pub(crate) fn boundary(context: &Context<'_>, face: &Face, of_face: &FaceMesh, s
         if face.flipped {
             reverse(&mut chords);
         }
-        claim_loop(&mut pool, chords, &mut found);
+        let direction = claim_loop(&mut pool, chords, &mut found);
+        found.directions.push(direction);
     }
     let sag = |i: usize| pool.taken[i].map(|of| (halves[i], of.map_or(0.0, |of| sag_of(context, of))));
     found.chords = (0..halves.len()).filter_map(sag).collect();
@@ -105,22 +109,22 @@ impl Pool {
 }
 
 /// Books the chords of one loop. Files give loops the wrong way round; a loop must only run one way as a whole.
-fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) {
+fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) -> Option<bool> {
     let (taken, missing) = pool.take_all(&chords);
     if missing.is_empty() {
         found.forward += usize::from(!chords.is_empty());
-        return;
+        return (!chords.is_empty()).then_some(true);
     }
     pool.put_back(&taken);
     reverse(&mut chords);
     let (taken_back, missing_back) = pool.take_all(&chords);
     if missing_back.is_empty() {
         found.backward += 1;
-        return;
+        return Some(false);
     }
     // There and back again along the same edges encloses nothing and may be left out.
     if encloses_nothing(&chords) && taken.is_empty() && taken_back.is_empty() {
-        return;
+        return None;
     }
     let mut missing = missing_back;
     if taken.len() > taken_back.len() {
@@ -130,6 +134,7 @@ fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) {
     }
     found.missing += missing.len();
     found.missing_edge = found.missing_edge.or(missing[0].of.map(|of| of.0));
+    None
 }
 
 fn encloses_nothing(chords: &[Chord]) -> bool {

@@ -52,6 +52,11 @@ impl<'a> Chart<'a> {
         self.surface.point(self.wrap.apply(p_uv))
     }
 
+    /// The period of a closed direction.
+    pub fn period(&self, axis: usize) -> Option<f64> {
+        self.periods[axis]
+    }
+
     /// The nearest vector of whole periods.
     pub fn whole_turns(&self, d: DVec2) -> DVec2 {
         let turn = |d: f64, period: Option<f64>| period.map_or(0.0, |p| p * (d / p).round());

@@ -17,6 +17,8 @@ use std::cmp::Ordering;
 pub(crate) struct EdgeAudit {
     /// Per chord, the bound of its distance from the curve.
     pub sag: Vec<f64>,
+    /// The curve's parameter at every point of the polyline, found again from the points.
+    pub parameters: Vec<f64>,
     /// The largest distance of an end vertex, or of a sample, from the curve.
     pub gap: f64,
     pub misplaced: usize,
@@ -70,6 +72,7 @@ fn audit_edge(
     audit.gap = at(0).distance(ends[0]).max(at(last).distance(ends[1]));
     let rounding = ROUNDING * (precision.scale + curve_magnitude(curve));
     let mut tracer = Tracer { curve, range: edge.range, t: edge.range.start, p: ends[0], rounding };
+    audit.parameters.push(edge.range.start);
     for i in 1..=last {
         let before = tracer.t;
         if i < last {
@@ -91,6 +94,7 @@ fn audit_edge(
             audit.sag = vec![f64::INFINITY; last];
             return audit;
         }
+        audit.parameters.push(tracer.t);
         audit.sag.push(curve.chord_error(before, tracer.t));
     }
     audit

@@ -1,13 +1,17 @@
 //! One face: its corners lie on the surface, its triangles cover it once, and each is within its bound.
 
+use crate::area::check_area;
 use crate::boundary::{Boundary, boundary};
 use crate::chart::{Chart, exact, turn, turned_triangles};
 use crate::context::Context;
 use crate::findings::{FaceFindings, Log};
 use crate::halves::{Half, Halves, half_key};
+use crate::overlap::overlaps;
 use crate::precision::CHUNK;
 use crate::prove;
+use crate::region::check_region;
 use crate::report::FaceAudit;
+use crate::sampled::check_samples;
 use chordal_brep::issue::MeshDefect;
 use chordal_brep::{AuditIssue, Face, FaceGeometry, Loop};
 use chordal_mesh::{FaceMesh, Origin};
@@ -50,14 +54,23 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     check_corners(context, &mut chart, &mut found, &mut log);
     let halves = Halves::of(&mesh.triangles, mesh.corners.len());
     let bounds_of = boundary(context, face, mesh, &halves.single);
-    check_triangles(context, &chart, &mut found, &mut log);
+    let folded = check_triangles(context, &chart, &mut found, &mut log);
     found.turned_over = is_turned_over(&chart, &bounds_of, log.face);
     check_boundary(context, &chart, &bounds_of, &mut log);
+    check_region(context, &chart, &bounds_of, &halves.single, &mut log);
+    if folded == 0 {
+        let places = overlaps(&chart, &halves.single);
+        if places > 0 {
+            log.add(AuditIssue::Overlap { places });
+        }
+        check_area(context, &chart, &bounds_of, &mut log);
+    }
     gather_shared(context, mesh, &halves, &mut found);
     if found.duplicates > 0 {
         log.add(AuditIssue::DuplicateTriangles { triangles: found.duplicates });
     }
     prove::prove(context, &chart, &bounds_of, &mut found, &mut log);
+    check_samples(context, &chart, &bounds_of, &found, &mut log);
     found.audit.proven_error = found.error + context.options.coordinate_rounding;
     found.problems = log.problems;
     found
@@ -172,8 +185,13 @@ struct TriangleFindings {
     least_cosine: f64,
 }
 
-/// Orientation in the chart, area, normals, volume, angles.
-fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFindings, log: &mut Log<'_>) {
+/// Orientation in the chart, area, normals, volume, angles; returns the number of inverted triangles.
+fn check_triangles(
+    context: &Context<'_>,
+    chart: &Chart<'_>,
+    found: &mut FaceFindings,
+    log: &mut Log<'_>,
+) -> usize {
     let origin = context.mesh.positions[0];
     let positions = &context.mesh.positions;
     let corners = &chart.mesh.corners;
@@ -223,6 +241,7 @@ fn check_triangles(context: &Context<'_>, chart: &Chart<'_>, found: &mut FaceFin
     {
         log.add(AuditIssue::OverAngle { angle: found.audit.max_angle, limit });
     }
+    folded
 }
 
 /// Two corners in one place, or a height that is only rounding.

@@ -5,7 +5,9 @@
 //! closed and oriented by the identity of its vertices ([`shell`]), and that the error bounds hold ([`prove`]).
 //! Of two meshes of which nothing else is known, [`largest_distance`] gives the distance by branch and bound.
 
+mod area;
 mod boundary;
+mod box_tree;
 mod chart;
 mod context;
 mod cuts;
@@ -15,14 +17,19 @@ mod face;
 mod fan;
 mod findings;
 mod halves;
+mod overlap;
 mod part;
 mod precision;
 mod prove;
+mod region;
 mod report;
+mod sampled;
+mod self_intersections;
 mod shell;
+mod triangle_pair;
 mod triangle_tree;
 
 pub use distance::{Distance, largest_distance};
 pub use part::audit_part;
-pub use report::{AuditOptions, Claim, FaceAudit, PartAudit, Problem, ShellAudit, Subject};
+pub use report::{AuditOptions, Claim, FaceAudit, FaceCrossing, PartAudit, Problem, ShellAudit, Subject};
 pub use triangle_tree::TriangleTree;

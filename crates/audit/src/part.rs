@@ -6,6 +6,7 @@ use crate::face::audit_face;
 use crate::findings::FaceFindings;
 use crate::precision::ROUNDING;
 use crate::report::{AuditOptions, Claim, PartAudit, Problem, Subject};
+use crate::self_intersections::self_intersections;
 use crate::shell::audit_shell;
 use chordal_brep::issue::MeshDefect;
 use chordal_brep::{AuditIssue, BodyKind, Part};
@@ -64,6 +65,9 @@ pub fn audit_part(
         audit.faces.push(face.audit);
     }
     add_shells(&context, &faces, &mut audit);
+    if options.self_intersections {
+        add_self_intersections(&context, &mut audit);
+    }
     let mut seen = FxHashSet::default();
     audit.problems.retain(|p| seen.insert((p.subject, p.issue.code())));
     audit.problems.sort_by_key(|p| p.subject);
@@ -183,5 +187,23 @@ fn add_shells(context: &Context<'_>, faces: &[FaceFindings], audit: &mut PartAud
     for (index, _) in faces.iter().enumerate().filter(|&(i, f)| f.turned_over && !vouched[i]) {
         let source = part.faces[index].source;
         audit.problems.push(Problem::new(Subject::Face(index as u32), source, AuditIssue::FaceTurnedOver));
+    }
+}
+
+/// Looks for facets that cut each other in every shell that the file calls closed and whose faces all have
+/// triangles. The sheets of an open shell may cross in the file, and nobody takes them for the skin of a solid.
+fn add_self_intersections(context: &Context<'_>, audit: &mut PartAudit) {
+    let closed = audit.shells.iter().filter(|s| s.closed_in_file && s.complete).map(|s| s.shell);
+    for shell in closed.collect::<Vec<_>>() {
+        let of_model = &context.part.shells[shell as usize];
+        let found = self_intersections(context, &of_model.faces);
+        let Some(most) = found.iter().rev().max_by_key(|crossing| crossing.facet_pairs) else { continue };
+        let issue = AuditIssue::SelfIntersections {
+            triangle_pairs: found.iter().map(|crossing| crossing.facet_pairs).sum(),
+            face_pairs: found.len(),
+            faces: most.faces.map(|f| context.part.faces[f as usize].source),
+        };
+        audit.problems.push(Problem::new(Subject::Shell(shell), of_model.source, issue));
+        audit.self_intersections.extend(found);
     }
 }

@@ -17,12 +17,14 @@ pub struct AuditOptions {
     pub coordinate_rounding: f64,
     /// Millimetres in one unit of the part; issues state lengths in millimetres.
     pub millimetres: f64,
+    /// Look for facets of closed shells that cut each other.
+    pub self_intersections: bool,
 }
 
 impl AuditOptions {
     /// A proven tolerance, no limit of the angle, coordinates as they are.
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, angle: None, proven: true, coordinate_rounding: 0.0, millimetres: 1.0 }
+        Self { tolerance, angle: None, proven: true, coordinate_rounding: 0.0, millimetres: 1.0, self_intersections: true }
     }
     pub fn with_angle(mut self, radians: Option<f64>) -> Self {
         self.angle = radians;
@@ -39,6 +41,11 @@ impl AuditOptions {
     /// Sets the size of the part's unit in millimetres, for the lengths in issues.
     pub fn with_millimetres(mut self, millimetres: f64) -> Self {
         self.millimetres = millimetres;
+        self
+    }
+    /// Sets whether facets of closed shells that cut each other are looked for.
+    pub fn with_self_intersections(mut self, on: bool) -> Self {
+        self.self_intersections = on;
         self
     }
 }
@@ -139,6 +146,15 @@ pub struct FaceAudit {
     pub leaning: usize,
 }
 
+/// Two faces of a closed shell whose facets cut each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaceCrossing {
+    /// Indices of the faces in the part, the lower one first; the same twice where a face cuts itself.
+    pub faces: [u32; 2],
+    /// Pairs of facets that cut each other.
+    pub facet_pairs: usize,
+}
+
 /// One part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartAudit {
@@ -153,6 +169,8 @@ pub struct PartAudit {
     pub shells: Vec<ShellAudit>,
     /// One per face of the part, in its order.
     pub faces: Vec<FaceAudit>,
+    /// Faces of closed shells whose facets cut each other.
+    pub self_intersections: Vec<FaceCrossing>,
     /// In the order of their subjects; at most one of each kind about each.
     pub problems: Vec<Problem>,
 }

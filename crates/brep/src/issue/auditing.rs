@@ -52,6 +52,15 @@ pub enum AuditIssue {
         /// Signed volume in cubic millimetres.
         volume: f64,
     },
+    /// Triangles of a closed shell cut each other.
+    SelfIntersections {
+        /// Pairs of triangles.
+        triangle_pairs: usize,
+        /// Pairs of faces that they belong to.
+        face_pairs: usize,
+        /// The pair of faces with the most pairs of triangles; twice the same where a face cuts itself.
+        faces: [Source; 2],
+    },
     /// Triangles whose height is only rounding.
     DegenerateTriangles {
         /// Number of triangles.
@@ -66,6 +75,34 @@ pub enum AuditIssue {
     InvertedTriangles {
         /// Number of triangles.
         triangles: usize,
+    },
+    /// Triangles of the face lie one on another in its parameter space.
+    Overlap {
+        /// Places at which that was found.
+        places: usize,
+    },
+    /// The face has loops, and its mesh covers the whole surface.
+    WholeSurface,
+    /// The mesh covers the other side of the face's loops.
+    OtherSide,
+    /// The mesh of a face on a lemon or apple torus covers parts of both sheets.
+    BothSheets,
+    /// Vertices inside the face lie beyond its boundary in parameter space.
+    OutOfReach {
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// The triangles cover another area of parameter space than the loops bound.
+    WrongArea {
+        /// The area of the triangles, as a share of the area within the loops.
+        share: f64,
+    },
+    /// A point of the surface is farther from the mesh than the bound allows.
+    BoundExceeded {
+        /// The bound.
+        proven: f64,
+        /// The measured distance.
+        measured: f64,
     },
     /// All triangles of the face run against its normal, and its loops do not explain it.
     FaceTurnedOver,
@@ -216,9 +253,17 @@ impl AuditIssue {
             AuditIssue::InconsistentEdges { .. } => "inconsistent-edges",
             AuditIssue::NonManifoldEdges { .. } => "non-manifold-edges",
             AuditIssue::InsideOut { .. } => "inside-out",
+            AuditIssue::SelfIntersections { .. } => "self-intersections",
             AuditIssue::DegenerateTriangles { .. } => "degenerate-triangles",
             AuditIssue::DuplicateTriangles { .. } => "duplicate-triangles",
             AuditIssue::InvertedTriangles { .. } => "inverted-triangles",
+            AuditIssue::Overlap { .. } => "overlap",
+            AuditIssue::WholeSurface => "whole-surface",
+            AuditIssue::OtherSide => "other-side",
+            AuditIssue::BothSheets => "both-sheets",
+            AuditIssue::OutOfReach { .. } => "out-of-reach",
+            AuditIssue::WrongArea { .. } => "wrong-area",
+            AuditIssue::BoundExceeded { .. } => "bound-exceeded",
             AuditIssue::FaceTurnedOver => "face-turned-over",
             AuditIssue::MisplacedVertices { .. } => "misplaced-vertices",
             AuditIssue::MisplacedModelVertices { .. } => "misplaced-model-vertices",
@@ -264,6 +309,17 @@ impl fmt::Display for AuditIssue {
             AuditIssue::InsideOut { volume } => {
                 write!(f, "the shell is inside out: its volume is {} mm³", number(*volume, 4))
             }
+            AuditIssue::SelfIntersections { triangle_pairs, face_pairs, faces: [a, b] } => {
+                let triangles = count(*triangle_pairs, "pair of triangles", "pairs of triangles");
+                let verb = if *triangle_pairs == 1 { "cuts" } else { "cut" };
+                write!(f, "{triangles} of the shell {verb} each other, ")?;
+                match (a == b, face_pairs) {
+                    (true, 1) => write!(f, "within face {a}"),
+                    (false, 1) => write!(f, "of faces {a} and {b}"),
+                    (true, n) => write!(f, "in {n} pairs of faces, most within face {a}"),
+                    (false, n) => write!(f, "in {n} pairs of faces, most of {a} and {b}"),
+                }
+            }
             AuditIssue::DegenerateTriangles { triangles } => {
                 write!(f, "{} without area", count(*triangles, "triangle", "triangles"))
             }
@@ -274,6 +330,28 @@ impl fmt::Display for AuditIssue {
                 let triangles = count(*triangles, "inverted triangle", "inverted triangles");
                 write!(f, "{triangles} (orientation in parameter space)")
             }
+            AuditIssue::Overlap { places } => {
+                let places = count(*places, "place", "places");
+                write!(f, "triangles of the face overlap in parameter space at {places}")
+            }
+            AuditIssue::WholeSurface => f.write_str("the mesh covers the whole surface and not the face"),
+            AuditIssue::OtherSide => f.write_str("the mesh covers the other side of the face's loops"),
+            AuditIssue::BothSheets => f.write_str("the mesh covers both sheets of the torus"),
+            AuditIssue::OutOfReach { vertices } => {
+                let vertices = count(*vertices, "vertex inside the face is", "vertices inside the face are");
+                write!(f, "{vertices} beyond its boundary")
+            }
+            AuditIssue::WrongArea { share } => write!(
+                f,
+                "the triangles cover {} times the area within the loops, in parameter space",
+                number(*share, 4)
+            ),
+            AuditIssue::BoundExceeded { proven, measured } => write!(
+                f,
+                "a point of the surface is {} from the mesh, beyond the proven error of {}",
+                length_mm(*measured),
+                length_mm(*proven)
+            ),
             AuditIssue::FaceTurnedOver => f.write_str("all triangles of the face are inverted"),
             AuditIssue::MisplacedVertices { vertices, distance } => {
                 let vertices = count(*vertices, "vertex is", "vertices are");

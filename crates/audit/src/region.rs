@@ -1,0 +1,110 @@
+//! Which part of the surface the mesh of a face covers.
+//!
+//! A bound of the distance does not tell one part of a surface from another. That the boundary of the mesh is the
+//! face's loops ([`crate::boundary`]), that all triangles run one way round and that none lies on another
+//! ([`crate::overlap`]) leaves two regions where the surface is closed: each loop has the face on one side and the
+//! rest of the surface on the other. Here the file's directions decide.
+//!
+//! 1. A face with loops has a boundary; otherwise the whole surface is covered.
+//! 2. On a closed surface the face is on the left of its loops, seen against the normal that the file gives it.
+//! 3. A face of a torus that meets its own axis (lemon or apple) is on one of its two sheets.
+//! 4. Vertices inside the face lie, in the chart, between its boundaries.
+//!
+//! Where the surface is not closed, the side does not matter: only one of the two regions is bounded. Files give
+//! loops and senses the wrong way round there, and the region is the same.
+
+use crate::boundary::Boundary;
+use crate::chart::Chart;
+use crate::context::Context;
+use crate::findings::Log;
+use crate::halves::Half;
+use chordal_brep::{AuditIssue, Face, Loop};
+use chordal_mesh::Origin;
+use chordal_nurbs::{Surface, UvBox};
+
+/// How far inside vertices may lie beyond the boundary in the chart, relative to its extent: rounding.
+const BEYOND: f64 = 1e-9;
+
+pub(crate) fn check_region(
+    context: &Context<'_>,
+    chart: &Chart<'_>,
+    bounds: &Boundary,
+    single: &[Half],
+    log: &mut Log<'_>,
+) {
+    if covers_whole_surface(log.face, bounds) {
+        log.add(AuditIssue::WholeSurface);
+    } else if is_other_side(chart, bounds, log.face) {
+        log.add(AuditIssue::OtherSide);
+    }
+    if is_on_both_sheets(chart) {
+        log.add(AuditIssue::BothSheets);
+    }
+    let beyond = beyond_boundary(context, chart, single);
+    if beyond > 0 {
+        log.add(AuditIssue::OutOfReach { vertices: beyond });
+    }
+}
+
+/// True where the face has a loop with an inside and no triangle ends at any loop. A seam that is the only loop of a
+/// whole sphere or torus is none: each of its edges runs there and back.
+fn covers_whole_surface(face: &Face, bounds: &Boundary) -> bool {
+    let is_seam = |a_loop: &Loop| match a_loop {
+        Loop::Vertex(_) => true,
+        Loop::Polygon { .. } => false,
+        Loop::Edges { coedges, .. } => coedges
+            .iter()
+            .all(|c| coedges.iter().any(|other| other.edge == c.edge && other.forward != c.forward)),
+    };
+    bounds.chords.is_empty() && !face.loops.iter().all(is_seam)
+}
+
+/// True where the mesh is on the right of its loops, seen against the face's normal, and both sides are bounded.
+fn is_other_side(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
+    let along_normal = chart.turned == face.normal_reversed();
+    let (left, right) = if along_normal {
+        (bounds.forward, bounds.backward)
+    } else {
+        (bounds.backward, bounds.forward)
+    };
+    left == 0 && right > 0 && is_closed(chart)
+}
+
+/// True where the surface has no border: in each direction it is periodic or ends in poles.
+fn is_closed(chart: &Chart<'_>) -> bool {
+    let ends_in_poles = |axis: usize| {
+        let range = if axis == 0 { chart.surface.domain().u() } else { chart.surface.domain().v() };
+        let near = 1e-9 * range.length();
+        let at = |value: f64| chart.poles.iter().any(|p| p.axis == axis && (p.value - value).abs() <= near);
+        range.is_finite() && at(range.start) && at(range.end)
+    };
+    let closed = [0, 1].map(|axis| chart.period(axis).is_some());
+    match closed {
+        [true, true] => true,
+        [true, false] => ends_in_poles(1),
+        [false, true] => ends_in_poles(0),
+        [false, false] => false,
+    }
+}
+
+/// True where corners lie on both sheets of a torus whose tube is wider than its circle.
+fn is_on_both_sheets(chart: &Chart<'_>) -> bool {
+    let Surface::Torus { major, minor, .. } = chart.surface else { return false };
+    if major.abs() >= minor.abs() {
+        return false;
+    }
+    let near = 1e-6 * minor.abs();
+    let radii = || chart.mesh.corners.iter().map(|c| major + minor * c.uv.y.cos());
+    radii().any(|r| r > near) && radii().any(|r| r < -near)
+}
+
+/// How many vertices inside the face lie, in the chart, beyond the box of its boundary.
+fn beyond_boundary(context: &Context<'_>, chart: &Chart<'_>, single: &[Half]) -> usize {
+    let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
+    let bounds = UvBox::from_points(single.iter().flat_map(|h| [uv(h.a), uv(h.b)]));
+    let bounds = bounds.inflated(bounds.size() * BEYOND);
+    let inner = chart.mesh.corners.iter().filter(|c| {
+        matches!(context.mesh.origins[c.position as usize], Origin::Face(_)) && !bounds.contains(c.uv)
+    });
+    inner.count()
+}
