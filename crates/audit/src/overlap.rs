@@ -10,6 +10,7 @@
 //! On a closed surface the same is checked against the boundary moved by whole periods: a face that runs round more
 //! than once must not come back over itself.
 //!
+//! Sides that end at a pole are left out of the first check: there the chart has many points for one of the surface.
 //! Signs of areas are exact; only against moved boundaries, whose coordinates are rounded, a crossing must be wider
 //! than rounding.
 
@@ -33,21 +34,32 @@ const MOST_TURNS: i32 = 8;
 struct Side {
     a: DVec2,
     b: DVec2,
+    /// One end is on a pole, where the chart has many points for one of the surface: the side may lie anywhere.
+    at_pole: bool,
+}
+
+impl Side {
+    fn moved(&self, by: DVec2) -> Self {
+        Self { a: self.a + by, b: self.b + by, ..*self }
+    }
 }
 
 /// The number of places found at which triangles of the face lie one on another. `single` are the sides of
 /// triangles without a partner; all triangles must run the same way round.
 pub(crate) fn overlaps(chart: &Chart<'_>, single: &[Half]) -> usize {
     let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
-    let side = |h: &Half| if chart.turned { (h.b, h.a) } else { (h.a, h.b) };
-    let sides: Vec<Side> = single.iter().map(|h| Side { a: uv(side(h).0), b: uv(side(h).1) }).collect();
+    let side = |h: &Half| {
+        let (a, b) = if chart.turned { (uv(h.b), uv(h.a)) } else { (uv(h.a), uv(h.b)) };
+        Side { a, b, at_pole: chart.touches_pole(h) }
+    };
+    let sides: Vec<Side> = single.iter().map(side).collect();
     let tree = BoxTree::new(sides.iter().map(|s| flat_box(s.a, s.b)));
     let mut found = 0;
     tree.own_pairs(&mut |i, j| found += usize::from(cross(&sides[i as usize], &sides[j as usize], 0.0)));
     let inside = places_inside(chart, single);
     found += wrong_windings(&sides, &tree, &inside, 1);
     for shift in shifts(chart) {
-        let moved: Vec<Side> = sides.iter().map(|s| Side { a: s.a + shift, b: s.b + shift }).collect();
+        let moved: Vec<Side> = sides.iter().map(|s| s.moved(shift)).collect();
         let moved_tree = BoxTree::new(moved.iter().map(|s| flat_box(s.a, s.b)));
         let depth = MOVED * chart.uv_box.size().max_element();
         tree.pairs_with(&moved_tree, &mut |i, j| {
@@ -69,7 +81,7 @@ fn cross(s: &Side, t: &Side, depth: f64) -> bool {
         let least = depth * line.a.distance(line.b);
         c * d < 0.0 && c.abs() > least && d.abs() > least
     };
-    apart(s, t) && apart(t, s)
+    !s.at_pole && !t.at_pole && apart(s, t) && apart(t, s)
 }
 
 /// One place inside the face beside each connected piece of its boundary: the middle of its largest triangle there.

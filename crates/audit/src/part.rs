@@ -184,9 +184,17 @@ fn add_shells(context: &Context<'_>, faces: &[FaceFindings], audit: &mut PartAud
         audit.problems.append(&mut shell.problems);
         audit.shells.push(shell.audit);
     }
-    for (index, _) in faces.iter().enumerate().filter(|&(i, f)| f.turned_over && !vouched[i]) {
-        let source = part.faces[index].source;
-        audit.problems.push(Problem::new(Subject::Face(index as u32), source, AuditIssue::FaceTurnedOver));
+    for (index, face) in faces.iter().enumerate().filter(|&(i, _)| !vouched[i]) {
+        let mut add = |issue| {
+            let source = part.faces[index].source;
+            audit.problems.push(Problem::new(Subject::Face(index as u32), source, issue));
+        };
+        if face.turned_over {
+            add(AuditIssue::FaceTurnedOver);
+        }
+        if face.other_side {
+            add(AuditIssue::OtherSide);
+        }
     }
 }
 

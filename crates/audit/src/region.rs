@@ -6,7 +6,9 @@
 //! rest of the surface on the other. Here the file's directions decide.
 //!
 //! 1. A face with loops has a boundary; otherwise the whole surface is covered.
-//! 2. On a closed surface the face is on the left of its loops, seen against the normal that the file gives it.
+//! 2. On a closed surface the face is on the left of its loops, seen against the normal that the file gives it. Where
+//!    the edges of a closed shell agree all round, the neighbours decide instead: files exist whose loops contradict
+//!    the sense of their face and whose shell is right.
 //! 3. A face of a torus that meets its own axis (lemon or apple) is on one of its two sheets.
 //! 4. Vertices inside the face lie, in the chart, between its boundaries.
 //!
@@ -18,7 +20,7 @@ use crate::chart::Chart;
 use crate::context::Context;
 use crate::findings::Log;
 use crate::halves::Half;
-use chordal_brep::{AuditIssue, Face, Loop};
+use chordal_brep::{AuditIssue, Coedge, Face, Loop};
 use chordal_mesh::Origin;
 use chordal_nurbs::{Surface, UvBox};
 
@@ -34,13 +36,11 @@ pub(crate) fn check_region(
 ) {
     if covers_whole_surface(log.face, bounds) {
         log.add(AuditIssue::WholeSurface);
-    } else if is_other_side(chart, bounds, log.face) {
-        log.add(AuditIssue::OtherSide);
     }
     if is_on_both_sheets(chart) {
         log.add(AuditIssue::BothSheets);
     }
-    let beyond = beyond_boundary(context, chart, single);
+    let beyond = beyond_boundary(context, chart, bounds, single);
     if beyond > 0 {
         log.add(AuditIssue::OutOfReach { vertices: beyond });
     }
@@ -52,22 +52,27 @@ fn covers_whole_surface(face: &Face, bounds: &Boundary) -> bool {
     let is_seam = |a_loop: &Loop| match a_loop {
         Loop::Vertex(_) => true,
         Loop::Polygon { .. } => false,
-        Loop::Edges { coedges, .. } => coedges
-            .iter()
-            .all(|c| coedges.iter().any(|other| other.edge == c.edge && other.forward != c.forward)),
+        Loop::Edges { coedges, .. } => coedges.iter().all(|c| coedges.iter().any(|other| is_back(c, other))),
     };
     bounds.chords.is_empty() && !face.loops.iter().all(is_seam)
 }
 
-/// True where the mesh is on the right of its loops, seen against the face's normal, and both sides are bounded.
-fn is_other_side(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
+/// True for two uses of one edge in opposite directions.
+fn is_back(one: &Coedge, other: &Coedge) -> bool {
+    other.edge == one.edge && other.forward != one.forward
+}
+
+/// True where the mesh is on the right of its loops, seen against the face's normal, and both sides are bounded. A loop
+/// that runs along a seam and back tells by the seam which side is meant.
+pub(crate) fn is_other_side(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
     let along_normal = chart.turned == face.normal_reversed();
-    let (left, right) = if along_normal {
-        (bounds.forward, bounds.backward)
-    } else {
-        (bounds.backward, bounds.forward)
+    let (left, right) =
+        if along_normal { (bounds.forward, bounds.backward) } else { (bounds.backward, bounds.forward) };
+    let cut_open = |a_loop: &Loop| match a_loop {
+        Loop::Edges { coedges, .. } => coedges.iter().any(|c| coedges.iter().any(|other| is_back(c, other))),
+        _ => false,
     };
-    left == 0 && right > 0 && is_closed(chart)
+    left == 0 && right > 0 && is_closed(chart) && !face.loops.iter().any(cut_open)
 }
 
 /// True where the surface has no border: in each direction it is periodic or ends in poles.
@@ -98,13 +103,18 @@ fn is_on_both_sheets(chart: &Chart<'_>) -> bool {
     radii().any(|r| r > near) && radii().any(|r| r < -near)
 }
 
-/// How many vertices inside the face lie, in the chart, beyond the box of its boundary.
-fn beyond_boundary(context: &Context<'_>, chart: &Chart<'_>, single: &[Half]) -> usize {
-    let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
-    let bounds = UvBox::from_points(single.iter().flat_map(|h| [uv(h.a), uv(h.b)]));
-    let bounds = bounds.inflated(bounds.size() * BEYOND);
+/// How many vertices inside the face lie, in the chart, beyond the box of its loops. Where the mesher cut the chart open,
+/// the sides of the cut bound it as well.
+fn beyond_boundary(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary, single: &[Half]) -> usize {
+    let uv = |h: &Half| [h.a, h.b].map(|corner| chart.mesh.corners[corner as usize].uv);
+    let reach = if bounds.cuts.is_empty() && bounds.stray.is_empty() {
+        UvBox::from_points(bounds.chords.iter().flat_map(|(h, _)| uv(h)))
+    } else {
+        UvBox::from_points(single.iter().flat_map(uv))
+    };
+    let reach = reach.inflated(reach.size() * BEYOND);
     let inner = chart.mesh.corners.iter().filter(|c| {
-        matches!(context.mesh.origins[c.position as usize], Origin::Face(_)) && !bounds.contains(c.uv)
+        matches!(context.mesh.origins[c.position as usize], Origin::Face(_)) && !reach.contains(c.uv)
     });
     inner.count()
 }

@@ -24,7 +24,14 @@ pub struct AuditOptions {
 impl AuditOptions {
     /// A proven tolerance, no limit of the angle, coordinates as they are.
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, angle: None, proven: true, coordinate_rounding: 0.0, millimetres: 1.0, self_intersections: true }
+        Self {
+            tolerance,
+            angle: None,
+            proven: true,
+            coordinate_rounding: 0.0,
+            millimetres: 1.0,
+            self_intersections: true,
+        }
     }
     pub fn with_angle(mut self, radians: Option<f64>) -> Self {
         self.angle = radians;

@@ -34,11 +34,14 @@ pub(crate) fn self_intersections(context: &Context<'_>, faces: &[FaceId]) -> Vec
         faces.par_iter().map(|face| FacetsOfFace::new(context, face.index())).collect();
     let mut pairs: Vec<(u32, u32)> = Vec::new();
     BoxTree::new(all.iter().map(|f| f.bounds)).own_pairs(&mut |i, j| pairs.push((i, j)));
-    pairs.extend((0..all.len()).filter(|&i| may_meet_itself(context, all[i].face)).map(|i| (i as u32, i as u32)));
+    pairs.extend(
+        (0..all.len()).filter(|&i| may_meet_itself(context, all[i].face)).map(|i| (i as u32, i as u32)),
+    );
     let count = |&(i, j): &(u32, u32)| {
         let (a, b) = (&all[i as usize], &all[j as usize]);
         let cuts = if i == j { a.cuts_of_its_own() } else { a.cuts_with(b) };
-        (cuts > 0).then(|| FaceCrossing { faces: [a.face.min(b.face), a.face.max(b.face)], facet_pairs: cuts })
+        (cuts > 0)
+            .then(|| FaceCrossing { faces: [a.face.min(b.face), a.face.max(b.face)], facet_pairs: cuts })
     };
     let mut found: Vec<FaceCrossing> = pairs.par_iter().filter_map(count).collect();
     found.sort_unstable_by_key(|crossing| crossing.faces);
@@ -50,9 +53,10 @@ fn may_meet_itself(context: &Context<'_>, face: u32) -> bool {
     match &context.part.faces[face as usize].geometry {
         FaceGeometry::Failed(_) => false,
         FaceGeometry::Surface(surface) => match surface.as_ref() {
-            Surface::Plane { .. } | Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Sphere { .. } => {
-                false
-            }
+            Surface::Plane { .. }
+            | Surface::Cylinder { .. }
+            | Surface::Cone { .. }
+            | Surface::Sphere { .. } => false,
             Surface::Torus { major, minor, .. } => major.abs() < minor.abs(),
             _ => true,
         },

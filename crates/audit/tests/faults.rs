@@ -247,6 +247,25 @@ fn an_understated_bound_is_found() {
 }
 
 #[test]
+fn a_bound_that_points_exceed_is_found() {
+    // As if the bound itself, which mesher and audit share, were too small.
+    let mut tried = 0;
+    for mut sample in Sample::all() {
+        for f in sample.faces().collect::<Vec<_>>() {
+            let honest = sample.claims[f];
+            if matches!(sample.surface(f), Surface::Plane { .. }) || !(honest.proven_error > 0.0) {
+                continue;
+            }
+            tried += 1;
+            sample.claims[f].proven_error = 0.2 * honest.proven_error;
+            sample.expect("an unsound bound", &["bound-exceeded"], |_| ());
+            sample.claims[f] = honest;
+        }
+    }
+    assert!(tried > 10, "only {tried} curved faces");
+}
+
+#[test]
 fn too_coarse_a_mesh_is_found() {
     for sample in Sample::all() {
         let tight = AuditOptions::new(0.5 * sample.tolerance);

@@ -1,0 +1,308 @@
+//! Meshes of the wrong part of a surface, each as near to it as a right mesh, and each to be found.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use chordal_audit::{AuditOptions, PartAudit, audit_part};
+use chordal_brep::{
+    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source,
+    Vertex, VertexId,
+};
+use chordal_mesh::{Corner, FaceMesh, Origin, PartMesh};
+use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface};
+use std::sync::Arc;
+
+const TOLERANCE: f64 = 0.02;
+
+fn codes(audit: &PartAudit) -> Vec<&'static str> {
+    audit.problems.iter().map(|p| p.issue.code()).collect()
+}
+
+fn audited(part: &Part, mesh: &PartMesh) -> PartAudit {
+    audit_part(part, mesh, &AuditOptions::new(TOLERANCE), None)
+}
+
+fn expect(what: &str, part: &Part, mesh: &PartMesh, code: &str) {
+    let audit = audited(part, mesh);
+    assert!(codes(&audit).contains(&code), "{what}: {:?}", audit.problems);
+}
+
+fn vertex(part: &mut Part, point: DVec3) -> VertexId {
+    part.vertices.push(Vertex { point, source: Source::default() });
+    VertexId::from(part.vertices.len() - 1)
+}
+
+fn edge(part: &mut Part, curve: Curve, range: Range, ends: [VertexId; 2]) -> EdgeId {
+    let [start, end] = ends;
+    part.edges.push(Edge { curve: Some(Arc::new(curve)), range, start, end, source: Source::default() });
+    EdgeId::from(part.edges.len() - 1)
+}
+
+/// The straight edge between two vertices, or the one that is there, and whether it runs that way.
+fn line(part: &mut Part, from: VertexId, to: VertexId) -> (EdgeId, bool) {
+    let runs = |a: VertexId, b: VertexId| part.edges.iter().position(|e| e.start == a && e.end == b);
+    if let Some(e) = runs(from, to) {
+        return (EdgeId::from(e), true);
+    }
+    if let Some(e) = runs(to, from) {
+        return (EdgeId::from(e), false);
+    }
+    let (p, q) = (part.vertices[from.index()].point, part.vertices[to.index()].point);
+    let curve = Curve::Line { origin: p, direction: q - p };
+    (edge(part, curve, Range::new(0.0, 1.0), [from, to]), true)
+}
+
+fn a_loop(edges: impl IntoIterator<Item = (EdgeId, bool)>) -> Loop {
+    let coedges = edges.into_iter().map(|(edge, forward)| Coedge { edge, forward, pcurves: Vec::new() });
+    Loop::Edges { coedges: coedges.collect(), outer: false }
+}
+
+fn face(part: &mut Part, surface: Surface, loops: Vec<Loop>) -> FaceId {
+    part.faces.push(Face {
+        geometry: FaceGeometry::Surface(Arc::new(surface)),
+        same_sense: true,
+        flipped: false,
+        loops,
+        name: String::new(),
+        color: None,
+        layer: None,
+        source: Source::default(),
+    });
+    FaceId::from(part.faces.len() - 1)
+}
+
+/// Puts all faces into one shell.
+fn close(part: &mut Part, closed: bool) {
+    let faces = (0..part.faces.len()).map(FaceId::from).collect();
+    part.shells = vec![Shell { faces, closed, source: Source::default() }];
+    part.bodies = vec![Body {
+        kind: if closed { BodyKind::Solid } else { BodyKind::Sheet },
+        shells: vec![ShellId(0)],
+        name: String::new(),
+        color: None,
+        layer: None,
+        source: Source::default(),
+    }];
+}
+
+fn mesh(part: &Part) -> PartMesh {
+    let (mesh, report) = common::mesh(part, TOLERANCE, None);
+    assert!(report.faces.iter().all(|f| f.failed.is_none()), "{:?}", report.faces);
+    mesh
+}
+
+/// A cap of the unit sphere above z = 0.6, bounded by one circle.
+fn cap(forward: bool) -> Part {
+    let mut part = Part::default();
+    let frame = Frame::new(DVec3::new(0.0, 0.0, 0.6), DVec3::Z, DVec3::X);
+    let at = vertex(&mut part, DVec3::new(0.8, 0.0, 0.6));
+    let circle = Curve::Circle { frame, radius: 0.8 };
+    let rim = edge(&mut part, circle, Range::new(0.0, std::f64::consts::TAU), [at, at]);
+    let sphere = Surface::Sphere { frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X), radius: 1.0 };
+    face(&mut part, sphere, vec![a_loop([(rim, forward)])]);
+    close(&mut part, false);
+    part
+}
+
+#[test]
+fn the_other_side_of_a_loop_is_found() {
+    for (wanted, meshed) in [(true, false), (false, true)] {
+        let part = cap(wanted);
+        let right = mesh(&part);
+        assert!(audited(&part, &right).clean(), "{:?}", audited(&part, &right).problems);
+        expect("the complement", &part, &mesh(&cap(meshed)), "other-side");
+    }
+}
+
+/// The unit sphere with a loop that runs out along a chord and back.
+fn folded_loop() -> Part {
+    let mut part = Part::default();
+    let (p, q) = (DVec3::X, DVec3::new(0.1_f64.cos(), 0.1_f64.sin(), 0.0));
+    let curve = NurbsCurve3::new(1, vec![0.0, 0.0, 1.0, 2.0, 2.0], vec![p, q, p], None).unwrap();
+    let at = vertex(&mut part, p);
+    let fold = edge(&mut part, Curve::Nurbs(curve), Range::new(0.0, 2.0), [at, at]);
+    let sphere = Surface::Sphere { frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X), radius: 1.0 };
+    face(&mut part, sphere, vec![a_loop([(fold, true)])]);
+    close(&mut part, false);
+    part
+}
+
+#[test]
+fn a_whole_sphere_for_a_sliver_is_found() {
+    let part = folded_loop();
+    let mut whole = part.clone();
+    whole.faces[0].loops.clear();
+    whole.edges.clear();
+    let mut mesh = mesh(&whole);
+    // The samples of the edge, which no triangle uses.
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend([DVec3::X, DVec3::new(0.1_f64.cos(), 0.1_f64.sin(), 0.0)]);
+    mesh.origins.extend([Origin::Vertex(0), Origin::Edge { edge: 0, index: 1 }]);
+    mesh.edges = vec![vec![first, first + 1, first]];
+    expect("a sphere", &part, &mesh, "whole-surface");
+}
+
+#[test]
+fn both_sheets_of_a_torus_are_found() {
+    for name in ["torus_lemon", "torus_apple"] {
+        let part = common::load(name).parts.into_iter().find(|p| !p.faces.is_empty()).unwrap();
+        let tolerance = 1e-3 * common::diagonal(&part);
+        let (mesh, report) = common::mesh(&part, tolerance, None);
+        let audit = common::audit(&part, &mesh, &report, tolerance);
+        assert!(audit.clean(), "{name}: {:?}", audit.problems);
+        let mut whole = part.clone();
+        whole.faces.truncate(1);
+        whole.faces[0].loops.clear();
+        whole.edges.clear();
+        close(&mut whole, false);
+        let (mesh, _) = common::mesh(&whole, tolerance, None);
+        let audit = audit_part(&whole, &mesh, &AuditOptions::new(tolerance), None);
+        assert!(codes(&audit).contains(&"both-sheets"), "{name}: {:?}", audit.problems);
+    }
+}
+
+fn square(part: &mut Part, corner: DVec3, size: f64) -> Vec<(EdgeId, bool)> {
+    let at = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+    let v = at.map(|(x, y)| vertex(part, corner + size * DVec3::new(x, y, 0.0)));
+    (0..4).map(|i| line(part, v[i], v[(i + 1) % 4])).collect()
+}
+
+/// The mesh of one plane face at z = 0: two triangles over every square of four vertices of the part.
+fn squares_meshed(part: &Part) -> PartMesh {
+    let n = part.vertices.len() as u32;
+    let corner = |i: u32| {
+        let p = part.vertices[i as usize].point;
+        Corner { position: i, uv: DVec2::new(p.x, p.y), normal: DVec3::Z }
+    };
+    let triangles = (0..n).step_by(4).flat_map(|i| [[i, i + 1, i + 2], [i, i + 2, i + 3]]).collect();
+    PartMesh {
+        positions: part.vertices.iter().map(|v| v.point).collect(),
+        origins: (0..n).map(Origin::Vertex).collect(),
+        faces: vec![FaceMesh { face: 0, corners: (0..n).map(corner).collect(), triangles, quads: 0 }],
+        edges: part.edges.iter().map(|e| vec![e.start.0, e.end.0]).collect(),
+    }
+}
+
+#[test]
+fn a_region_that_is_covered_twice_is_found() {
+    let plane = || Surface::Plane { frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X) };
+    // Side by side it is a face in two pieces; the others cross, or lie one in the other.
+    for (x, size, twice) in [(3.0, 2.0, false), (1.0, 2.0, true), (0.5, 1.0, true)] {
+        let mut part = Part::default();
+        let loops = [square(&mut part, DVec3::ZERO, 2.0), square(&mut part, DVec3::new(x, 0.5, 0.0), size)];
+        face(&mut part, plane(), loops.into_iter().map(a_loop).collect());
+        close(&mut part, false);
+        let audit = audited(&part, &squares_meshed(&part));
+        assert_eq!(
+            codes(&audit),
+            if twice { vec!["overlap"] } else { vec![] },
+            "at {x}: {:?}",
+            audit.problems
+        );
+    }
+}
+
+#[test]
+fn a_dropped_hole_is_found() {
+    let part = common::load("bracket").parts.into_iter().find(|p| !p.faces.is_empty()).unwrap();
+    let tolerance = 1e-3 * common::diagonal(&part);
+    let mut tried = 0;
+    for f in 0..part.faces.len() {
+        let planar = matches!(&part.faces[f].geometry, FaceGeometry::Surface(s) if matches!(**s, Surface::Plane { .. }));
+        if !planar || part.faces[f].loops.len() < 2 {
+            continue;
+        }
+        tried += 1;
+        let mut without = part.clone();
+        without.faces[f].loops.truncate(1);
+        let (mesh, report) = common::mesh(&without, tolerance, None);
+        let audit = common::audit(&part, &mesh, &report, tolerance);
+        assert!(codes(&audit).contains(&"missing-chords"), "face {f}: {:?}", audit.problems);
+    }
+    assert!(tried > 0, "no hole");
+}
+
+/// True for a corner with triangles all round: as many as neighbours.
+fn is_surrounded(mesh: &FaceMesh, corner: u32) -> bool {
+    let around: Vec<_> = mesh.triangles.iter().filter(|t| t.contains(&corner)).collect();
+    let others = around.iter().flat_map(|t| t.iter()).filter(|&&c| c != corner);
+    let neighbours: std::collections::BTreeSet<u32> = others.copied().collect();
+    !around.is_empty() && around.len() == neighbours.len()
+}
+
+#[test]
+fn a_facet_far_outside_is_found() {
+    let mut tried = 0;
+    for name in ["fillets", "torus_bands", "fillet_bspline"] {
+        let part = common::load(name).parts.into_iter().find(|p| !p.faces.is_empty()).unwrap();
+        let tolerance = 1e-3 * common::diagonal(&part);
+        let (good, report) = common::mesh(&part, tolerance, None);
+        for f in 0..part.faces.len() {
+            let FaceGeometry::Surface(surface) = &part.faces[f].geometry else { continue };
+            if part.faces[f].loops.is_empty() {
+                continue;
+            }
+            let is_inside = |&c: &usize| is_surrounded(&good.faces[f], c as u32);
+            let Some(c) = (0..good.faces[f].corners.len()).find(is_inside) else { continue };
+            tried += 1;
+            let mut mesh = good.clone();
+            let of_face = &mut mesh.faces[f];
+            let extent =
+                of_face.corners.iter().fold(DVec2::ZERO, |m, o| m.max((o.uv - of_face.corners[c].uv).abs()));
+            of_face.corners[c].uv += 1.5 * extent;
+            mesh.positions[of_face.corners[c].position as usize] = surface.point(of_face.corners[c].uv);
+            let audit = common::audit(&part, &mesh, &report, tolerance);
+            assert!(codes(&audit).contains(&"out-of-reach"), "{name} face {f}: {:?}", audit.problems);
+        }
+    }
+    assert!(tried > 5, "only {tried} faces with vertices inside");
+}
+
+#[test]
+fn a_face_turned_over_is_found() {
+    for name in ["fillets", "bracket", "fillet_bspline"] {
+        let part = common::load(name).parts.into_iter().find(|p| !p.faces.is_empty()).unwrap();
+        let tolerance = 1e-3 * common::diagonal(&part);
+        let (good, report) = common::mesh(&part, tolerance, None);
+        for f in (0..part.faces.len()).step_by(3) {
+            let mut mesh = good.clone();
+            mesh.faces[f].triangles.iter_mut().for_each(|t| t.swap(0, 1));
+            mesh.faces[f].corners.iter_mut().for_each(|c| c.normal = -c.normal);
+            let audit = common::audit(&part, &mesh, &report, tolerance);
+            assert!(codes(&audit).contains(&"inconsistent-edges"), "{name} face {f}: {:?}", audit.problems);
+        }
+    }
+}
+
+/// A tetrahedron of plane faces with one corner at `at`.
+fn tetrahedron(part: &mut Part, at: DVec3) {
+    let v = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| vertex(part, at + p));
+    for [a, b, c] in [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {
+        let corners = [v[a], v[b], v[c]];
+        let edges: Vec<_> = (0..3).map(|i| line(part, corners[i], corners[(i + 1) % 3])).collect();
+        let [p, q, r] = corners.map(|v| part.vertices[v.index()].point);
+        let frame = Frame::new(p, (q - p).cross(r - p).normalize(), (q - p).normalize());
+        face(part, Surface::Plane { frame }, vec![a_loop(edges)]);
+    }
+}
+
+#[test]
+fn facets_that_cut_each_other_are_found() {
+    for (apart, cut) in [(3.0, false), (0.25, true)] {
+        let mut part = Part::default();
+        tetrahedron(&mut part, DVec3::ZERO);
+        tetrahedron(&mut part, DVec3::new(apart, 0.1, 0.15));
+        close(&mut part, true);
+        let audit = audited(&part, &mesh(&part));
+        assert_eq!(
+            codes(&audit),
+            if cut { vec!["self-intersections"] } else { vec![] },
+            "{:?}",
+            audit.problems
+        );
+        assert_eq!(audit.self_intersections.is_empty(), !cut);
+        let off = AuditOptions::new(TOLERANCE).with_self_intersections(false);
+        assert!(audit_part(&part, &mesh(&part), &off, None).clean());
+    }
+}
