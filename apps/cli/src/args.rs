@@ -1,9 +1,8 @@
 //! The command line: what can be asked, with its units and defaults.
 
 use crate::render_args::RenderArgs;
-use chordal::{
-    Bound, EdgeMethod, Format, JobOptions, ReadOptions, Sew, Strategy, Tolerance, Unit, UpAxis, Winding,
-};
+use chordal::methods::{EdgeMethodEntry, StrategyEntry, edge_method_named, strategy_named};
+use chordal::{Bound, Format, JobOptions, ReadOptions, Sew, Tolerance, Unit, UpAxis, Winding};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -113,10 +112,10 @@ pub struct AccuracyArgs {
     pub max_edge: Option<f64>,
     /// How points are placed and connected.
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = strategies())]
-    pub strategy: Strategy,
+    pub strategy: &'static StrategyEntry,
     /// How edges become chords; every chord is proven against the edge itself.
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = edge_methods())]
-    pub edge_method: EdgeMethod,
+    pub edge_method: &'static EdgeMethodEntry,
     /// Whether the error of a facet is proven by an upper bound or estimated from samples.
     #[arg(long, value_enum, default_value = "proven")]
     pub bound: BoundArg,
@@ -149,15 +148,15 @@ fn parse_angle(text: &str) -> Result<AngleArg, chordal::QuantityError> {
 }
 
 /// Strategies by name, with a line of help for each.
-fn strategies() -> impl TypedValueParser<Value = Strategy> {
-    let names = Strategy::entries().iter().map(|e| PossibleValue::new(e.name).help(e.summary));
-    PossibleValuesParser::new(names).try_map(|name| Strategy::from_name(&name).ok_or("no such strategy"))
+fn strategies() -> impl TypedValueParser<Value = &'static StrategyEntry> {
+    let names = chordal::methods::strategies().iter().map(|e| PossibleValue::new(e.name).help(e.summary));
+    PossibleValuesParser::new(names).try_map(|name| strategy_named(&name).ok_or("no such strategy"))
 }
 
 /// Edge methods by name, with a line of help for each.
-fn edge_methods() -> impl TypedValueParser<Value = EdgeMethod> {
-    let names = EdgeMethod::entries().iter().map(|e| PossibleValue::new(e.name).help(e.summary));
-    PossibleValuesParser::new(names).try_map(|name| EdgeMethod::from_name(&name).ok_or("no such edge method"))
+fn edge_methods() -> impl TypedValueParser<Value = &'static EdgeMethodEntry> {
+    let names = chordal::methods::edge_methods().iter().map(|e| PossibleValue::new(e.name).help(e.summary));
+    PossibleValuesParser::new(names).try_map(|name| edge_method_named(&name).ok_or("no such edge method"))
 }
 
 fn parse_jobs(text: &str) -> Result<usize, String> {
@@ -244,8 +243,8 @@ impl AccuracyArgs {
             .with_boundary_tolerance(self.boundary_tolerance)
             .with_angle(self.angle.0)
             .with_max_edge(self.max_edge)
-            .with_strategy(self.strategy)
-            .with_edge_method(self.edge_method)
+            .with_fill_method(self.strategy.fill_method())
+            .with_edge_splitter(self.edge_method.edge_splitter())
             .with_sew(self.sew.unwrap_or_default())
             .with_bound(bound)
             .with_read(ReadOptions::default().with_winding(winding))
@@ -358,7 +357,7 @@ pub struct CompareArgs {
     pub accuracy: AccuracyArgs,
     /// Which strategies, separated by commas [default: all].
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = strategies())]
-    pub strategies: Vec<Strategy>,
+    pub strategies: Vec<&'static StrategyEntry>,
     /// Compare the proven and the estimated bound instead of the one of --bound.
     #[arg(long)]
     pub both_bounds: bool,
@@ -374,8 +373,8 @@ pub struct CompareArgs {
 }
 
 /// All strategies where none is named.
-pub fn strategies_named(asked: &[Strategy]) -> Vec<Strategy> {
-    if asked.is_empty() { Strategy::entries().iter().map(|e| e.strategy).collect() } else { asked.to_vec() }
+pub fn strategies_named(asked: &[&'static StrategyEntry]) -> Vec<&'static StrategyEntry> {
+    if asked.is_empty() { chordal::methods::strategies().iter().collect() } else { asked.to_vec() }
 }
 
 #[derive(Debug, Args)]

@@ -9,7 +9,8 @@ use crate::outputs::{Outputs, plan};
 use crate::progress::Bar;
 use chordal::brep::Severity;
 use chordal::brep::issue::words::{count, length_mm, number};
-use chordal::{Cancel, Job, Report, Strategy};
+use chordal::methods::Strategy;
+use chordal::{Cancel, Job, Report};
 use std::path::Path;
 
 /// At most so many warnings of one input are shown; the report has all.
@@ -137,7 +138,7 @@ fn result_line(report: &Report) -> String {
 
 /// Quadrilaterals are one strategy's, and not every format has them.
 fn check_quads(args: &MeshArgs) -> Result<(), String> {
-    if args.quads && args.accuracy.strategy != Strategy::Bezier {
+    if args.quads && args.accuracy.strategy.strategy != Some(Strategy::Bezier) {
         return Err("--quads needs --strategy bezier: the others make triangles only".into());
     }
     Ok(())

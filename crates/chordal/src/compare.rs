@@ -9,7 +9,8 @@ use crate::report::StageEntry;
 use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_brep::Model;
-use chordal_tessellate::{Bound, Cancel, Stopwatch, Strategy};
+use chordal_methods::StrategyEntry;
+use chordal_tessellate::{Bound, Cancel, Stopwatch};
 use serde::Serialize;
 use std::path::Path;
 
@@ -77,7 +78,7 @@ pub struct PhaseSeconds {
 pub fn compare(
     input: &Path,
     options: &JobOptions,
-    strategies: &[Strategy],
+    strategies: &[&StrategyEntry],
     bounds: &[Bound],
     cancel: &Cancel,
     tell: &mut dyn FnMut(&ComparedRow),
@@ -88,13 +89,13 @@ pub fn compare(
         model: input.display().to_string(),
         angle: options.angle.map(f64::to_degrees),
         faces: model.placed_faces(),
-        edge_method: options.edge_method.name().into(),
+        edge_method: options.edge_splitter_name().into(),
         ..Comparison::default()
     };
     let mut lower_bound = None;
-    for &strategy in strategies {
+    for strategy in strategies {
         for &bound in bounds {
-            let options = options.clone().with_strategy(strategy).with_bound(bound);
+            let options = options.clone().with_fill_method(strategy.fill_method()).with_bound(bound);
             let resolved = resolve(&model, &options, None, input, cancel)?;
             comparison.tolerance = resolved.tolerance;
             let clock = Stopwatch::of_process();
@@ -105,7 +106,7 @@ pub fn compare(
             }
             let fewest = *lower_bound.get_or_insert_with(|| fewest(&resolved, &parts));
             let row = ComparedRow {
-                strategy: strategy.name().into(),
+                strategy: strategy.name.into(),
                 bound: crate::names::bound_name(bound).into(),
                 seconds,
                 ..row(&model, &resolved, &parts, fewest)

@@ -21,6 +21,7 @@ mod area;
 mod auditing;
 mod check;
 mod clock;
+#[cfg(feature = "methods")]
 mod compare;
 mod convert;
 mod drawing;
@@ -36,6 +37,7 @@ mod mesh_sewing;
 mod meshed_part;
 mod names;
 mod options;
+#[cfg(feature = "methods")]
 mod papers;
 mod placement;
 mod process;
@@ -53,6 +55,7 @@ mod whole_file;
 pub use against::{AgainstReport, WorstFace};
 pub use area::area;
 pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
+#[cfg(feature = "methods")]
 pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, compare, plot};
 pub use convert::{ConvertOptions, Converted, convert};
 pub use error::JobError;
@@ -63,6 +66,7 @@ pub use job::{Job, Outcome, read_model, read_model_with, run, thread_pool};
 pub use mesh_sewing::{LevelEntry, MeshSewing, MeshSewingReport, OpenBorderEntry, SEW_SCHEMA, sew_mesh_file};
 pub use meshed_part::{MeshedPart, mesh_parts};
 pub use options::JobOptions;
+#[cfg(feature = "methods")]
 pub use papers::{LoopEntry, PaperTables, SurfaceEntry, paper_tables};
 pub use placement::{PartUse, part_uses};
 pub use process::peak_memory;
@@ -82,13 +86,13 @@ pub use chordal_document as document;
 #[cfg(feature = "gpu")]
 pub use chordal_gpu as gpu;
 pub use chordal_mesh as mesh;
+#[cfg(feature = "methods")]
+pub use chordal_methods as methods;
 pub use chordal_nurbs as nurbs;
 pub use chordal_read as read;
 pub use chordal_read::{ReadOptions, Winding};
 pub use chordal_sew as sew;
 pub use chordal_tessellate as tessellate;
-pub use chordal_tessellate::{
-    Bound, Bulk, Cancel, Cut, EdgeMethod, EdgeMethodEntry, Fill, Strategy, StrategyEntry, Stretch,
-};
+pub use chordal_tessellate::{Bound, Bulk, Cancel};
 pub use chordal_write as write;
 pub use chordal_write::{Format, Unit, UpAxis};

@@ -2,9 +2,11 @@
 
 use crate::{Sew, Tolerance};
 use chordal_read::ReadOptions;
-use chordal_tessellate::{Bound, Bulk, EdgeMethod, Strategy};
+use chordal_tessellate::method::{EdgeSplitter, FillMethod};
+use chordal_tessellate::{Bound, Bulk};
 use chordal_write::{Format, Unit, UpAxis};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// What is asked of a whole job.
@@ -14,7 +16,7 @@ use std::time::Duration;
 /// let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.05)).with_angle(None);
 /// assert!(!options.strict);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct JobOptions {
     pub tolerance: Tolerance,
@@ -25,11 +27,12 @@ pub struct JobOptions {
     pub angle: Option<f64>,
     /// Longest mesh edge, in millimetres.
     pub max_edge: Option<f64>,
-    pub strategy: Strategy,
-    /// Write the quadrilaterals of the strategy as such, where it makes some and the format has them (OBJ, PLY).
+    /// A method that fills faces, in place of the default one (feature `methods` has some).
+    pub fill_method: Option<Arc<dyn FillMethod>>,
+    /// Write the quadrilaterals of the fill method as such, where it makes some and the format has them (OBJ, PLY).
     pub quads: bool,
-    /// How edges become polylines.
-    pub edge_method: EdgeMethod,
+    /// A method that cuts edges into chords, in place of the default one.
+    pub edge_splitter: Option<Arc<dyn EdgeSplitter>>,
     /// What to make of what the file leaves open.
     pub read: ReadOptions,
     /// Whether loose faces are sewn before they are meshed.
@@ -62,9 +65,9 @@ impl Default for JobOptions {
             boundary_tolerance: None,
             angle: Some(20_f64.to_radians()),
             max_edge: None,
-            strategy: Strategy::Default,
+            fill_method: None,
             quads: false,
-            edge_method: EdgeMethod::Default,
+            edge_splitter: None,
             read: ReadOptions::default(),
             sew: Sew::default(),
             bound: Bound::Proven,
@@ -82,6 +85,14 @@ impl Default for JobOptions {
 }
 
 impl JobOptions {
+    /// The name of the fill method, `default` where there is none.
+    pub fn fill_method_name(&self) -> &str {
+        self.fill_method.as_ref().map_or("default", |method| method.name())
+    }
+    /// The name of the edge method, `default` where there is none.
+    pub fn edge_splitter_name(&self) -> &str {
+        self.edge_splitter.as_ref().map_or("default", |method| method.name())
+    }
     pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
         self.tolerance = tolerance;
         self
@@ -98,16 +109,16 @@ impl JobOptions {
         self.max_edge = mm;
         self
     }
-    pub fn with_strategy(mut self, strategy: Strategy) -> Self {
-        self.strategy = strategy;
+    pub fn with_fill_method(mut self, method: Option<Arc<dyn FillMethod>>) -> Self {
+        self.fill_method = method;
         self
     }
     pub fn with_quads(mut self, quads: bool) -> Self {
         self.quads = quads;
         self
     }
-    pub fn with_edge_method(mut self, method: EdgeMethod) -> Self {
-        self.edge_method = method;
+    pub fn with_edge_splitter(mut self, splitter: Option<Arc<dyn EdgeSplitter>>) -> Self {
+        self.edge_splitter = splitter;
         self
     }
     pub fn with_read(mut self, read: ReadOptions) -> Self {

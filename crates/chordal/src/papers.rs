@@ -8,11 +8,16 @@ use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_brep::{FaceGeometry, Model};
 use chordal_mesh::FaceMesh;
+use chordal_methods::{
+    Cut, EdgeMethod, LoopRow, Strategy, Stretch, edge_method_named, edge_methods, loop_rows,
+};
 use chordal_nurbs::{CoherentEvaluator, DVec2, DVec3, NurbsSurface, Surface, UvBox};
-use chordal_tessellate::{Bound, Cancel, Cut, EdgeMethod, LoopRow, Stopwatch, Strategy, Stretch, loop_rows};
+use chordal_tessellate::method::{EdgeSplitter, FillMethod};
+use chordal_tessellate::{Bound, Cancel, Stopwatch};
 use serde::Serialize;
 use std::hint::black_box;
 use std::path::Path;
+use std::sync::Arc;
 
 /// What a model gives in the tables.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -82,21 +87,23 @@ pub fn paper_tables(input: &Path, options: &JobOptions, cancel: &Cancel) -> Resu
         surfaces: Vec::new(),
     };
     for (strategy, edge_method, bound) in surface_methods() {
-        let options = options.clone().with_strategy(strategy).with_edge_method(edge_method).with_bound(bound);
+        let fill = strategy.map(|strategy| Arc::new(strategy) as Arc<dyn FillMethod>);
+        let split = edge_method.map(|method| Arc::new(method) as Arc<dyn EdgeSplitter>);
+        let options = options.clone().with_fill_method(fill).with_edge_splitter(split).with_bound(bound);
         tables.surfaces.push(surface(&model, &options, input, cancel)?);
     }
     Ok(tables)
 }
 
 fn loops(model: &Model, resolved: &Resolved) -> Vec<LoopEntry> {
-    let methods: Vec<EdgeMethod> = EdgeMethod::entries().iter().map(|e| e.method).collect();
+    let methods: Vec<EdgeMethod> = edge_methods().iter().filter_map(|e| e.method).collect();
     let mut entries: Vec<LoopEntry> = Vec::new();
     for (part, (part_use, options)) in model.parts.iter().zip(resolved.uses.iter().zip(&resolved.parts)) {
         if part_use.instances == 0 {
             continue;
         }
         for row in quickest(part, options.tolerance, &methods) {
-            let name = row.method.name();
+            let name = EdgeSplitter::name(&row.method);
             if !entries.iter().any(|e| e.method == name) {
                 entries.push(LoopEntry { method: name.into(), ..LoopEntry::default() });
             }
@@ -124,19 +131,19 @@ fn quickest(part: &chordal_brep::Part, tolerance: f64, methods: &[EdgeMethod]) -
 }
 
 /// The methods of Tables 3 and 4, and ours.
-fn surface_methods() -> Vec<(Strategy, EdgeMethod, Bound)> {
-    let lifted = EdgeMethod::from_name("bezier3d").unwrap_or_default();
+fn surface_methods() -> Vec<(Option<Strategy>, Option<EdgeMethod>, Bound)> {
+    let lifted = edge_method_named("bezier3d").and_then(|e| e.method);
     let quadtree = Strategy::Quadtree(Stretch::SingularValue);
-    let mut methods = vec![(quadtree, EdgeMethod::Bezier2d, Bound::Proven)];
+    let mut methods = vec![(Some(quadtree), Some(EdgeMethod::Bezier2d), Bound::Proven)];
     for strategy in [
         quadtree,
         Strategy::Binary(Cut::Midpoint),
         Strategy::Kd(Cut::Midpoint),
         Strategy::Kd(Cut::WorstPoint),
     ] {
-        methods.extend([Bound::Proven, Bound::Estimated].map(|bound| (strategy, lifted, bound)));
+        methods.extend([Bound::Proven, Bound::Estimated].map(|bound| (Some(strategy), lifted, bound)));
     }
-    methods.extend([Bound::Proven, Bound::Estimated].map(|b| (Strategy::Default, EdgeMethod::Default, b)));
+    methods.extend([Bound::Proven, Bound::Estimated].map(|b| (None, None, b)));
     methods
 }
 
@@ -148,8 +155,8 @@ fn surface(
 ) -> Result<SurfaceEntry, JobError> {
     let resolved = resolve(model, options, None, input, cancel)?;
     let mut entry = SurfaceEntry {
-        strategy: options.strategy.name().into(),
-        edge_method: options.edge_method.name().into(),
+        strategy: options.fill_method_name().into(),
+        edge_method: options.edge_splitter_name().into(),
         bound: crate::names::bound_name(options.bound).into(),
         seconds: f64::INFINITY,
         ..SurfaceEntry::default()

@@ -19,7 +19,7 @@ const PLACEMENT_ULPS: f64 = 8.0;
 const LARGEST: f64 = 1e21;
 
 /// Everything that the options mean for this model.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Resolved {
     /// In millimetres, of the mesh as written.
     pub tolerance: f64,
@@ -81,9 +81,9 @@ pub fn resolve(
                 .with_angle(options.angle)
                 .with_max_edge(options.max_edge.map(|length| length / part_use.scale))
                 .with_bound(options.bound)
-                .with_strategy(options.strategy)
+                .with_fill_method(options.fill_method.clone())
                 .with_quads(options.quads)
-                .with_edge_method(options.edge_method)
+                .with_edge_splitter(options.edge_splitter.clone())
                 .with_bulk(options.bulk.clone())
                 .with_cells_recorded(options.debug_svg.is_some())
                 .with_face_timeout(options.face_timeout)

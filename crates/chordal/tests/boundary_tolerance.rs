@@ -1,15 +1,18 @@
 //! Separate tolerances for edges and facets: each is kept, by every strategy, and the mesh stays closed.
 
-use chordal::{Closedness, Job, JobOptions, Report, Strategy, Tolerance};
+#![cfg(feature = "methods")]
+
+use chordal::methods::{StrategyEntry, strategies};
+use chordal::{Closedness, Job, JobOptions, Report, Tolerance};
 use std::path::Path;
 
-fn mesh(name: &str, strategy: Strategy, inside: f64, boundary: Option<f64>) -> Report {
+fn mesh(name: &str, strategy: &StrategyEntry, inside: f64, boundary: Option<f64>) -> Report {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step");
     let options = JobOptions::default()
         .with_angle(None)
         .with_tolerance(Tolerance::Percent(inside))
         .with_boundary_tolerance(boundary.map(Tolerance::Percent))
-        .with_strategy(strategy);
+        .with_fill_method(strategy.fill_method());
     chordal::run(&Job::new(path).with_options(options)).expect("a mesh").report
 }
 
@@ -18,9 +21,9 @@ const MODELS: [&str; 4] = ["bracket", "fillet_torus", "blade", "sphere_side_cut"
 #[test]
 fn finer_edges_leave_the_inside_as_coarse_as_asked() {
     for name in MODELS {
-        for entry in Strategy::entries() {
-            let plain = mesh(name, entry.strategy, 0.5, None);
-            let fine = mesh(name, entry.strategy, 0.5, Some(0.05));
+        for entry in strategies() {
+            let plain = mesh(name, entry, 0.5, None);
+            let fine = mesh(name, entry, 0.5, Some(0.05));
             let asked = &fine.options;
             assert!(fine.clean, "{name}, {}: {:?}", entry.name, fine.error_sentences());
             assert!((asked.tolerance - 10.0 * asked.boundary_tolerance).abs() < 1e-9 * asked.tolerance);
@@ -32,7 +35,7 @@ fn finer_edges_leave_the_inside_as_coarse_as_asked() {
             );
             // Uniform grids may have been halved as a whole for the sake of a coarse edge.
             let more = fine.triangles > plain.triangles;
-            assert!(more || entry.strategy != Strategy::Default, "{name}, {}", entry.name);
+            assert!(more || entry.strategy.is_some(), "{name}, {}", entry.name);
         }
     }
 }
@@ -40,8 +43,8 @@ fn finer_edges_leave_the_inside_as_coarse_as_asked() {
 #[test]
 fn coarser_edges_save_triangles_and_facets_away_from_them_keep_their_tolerance() {
     for name in MODELS {
-        let fine = mesh(name, Strategy::Default, 0.05, None);
-        let coarse = mesh(name, Strategy::Default, 0.05, Some(0.5));
+        let fine = mesh(name, &strategies()[0], 0.05, None);
+        let coarse = mesh(name, &strategies()[0], 0.05, Some(0.5));
         let asked = &coarse.options;
         assert!(
             coarse.clean && coarse.closedness == Some(Closedness::Closed),
@@ -56,8 +59,8 @@ fn coarser_edges_save_triangles_and_facets_away_from_them_keep_their_tolerance()
 
 #[test]
 fn the_same_tolerance_twice_is_the_same_mesh() {
-    let one = mesh("bracket", Strategy::Default, 0.1, None);
-    let two = mesh("bracket", Strategy::Default, 0.1, Some(0.1));
+    let one = mesh("bracket", &strategies()[0], 0.1, None);
+    let two = mesh("bracket", &strategies()[0], 0.1, Some(0.1));
     assert_eq!((one.triangles, one.proven_error), (two.triangles, two.proven_error));
     assert_eq!(one.options.boundary_tolerance, one.options.tolerance);
 }

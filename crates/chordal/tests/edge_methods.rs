@@ -1,25 +1,30 @@
 //! Every edge method on the whole corpus: what is clean with the default's chords is clean with any.
 
-use chordal::{EdgeMethod, Job, JobOptions, Report, Tolerance};
+#![cfg(feature = "methods")]
+
+use chordal::methods::{EdgeMethodEntry, edge_method_named, edge_methods};
+use chordal::{Job, JobOptions, Report, Tolerance};
 use std::path::{Path, PathBuf};
 
 fn corpus(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step")
 }
 
-fn mesh(name: &str, percent: f64, method: EdgeMethod) -> Result<Report, String> {
-    let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent)).with_edge_method(method);
+fn mesh(name: &str, percent: f64, method: &EdgeMethodEntry) -> Result<Report, String> {
+    let options = JobOptions::default()
+        .with_tolerance(Tolerance::Percent(percent))
+        .with_edge_splitter(method.edge_splitter());
     chordal::run(&Job::new(corpus(name)).with_options(options)).map(|o| o.report).map_err(|e| e.to_string())
 }
 
 /// Where another method's mesh is not as clean as the default's.
 fn faults(name: &str, percent: f64, methods: &[&str]) -> Vec<String> {
-    let Ok(default) = mesh(name, percent, EdgeMethod::Default) else { return Vec::new() };
+    let Ok(default) = mesh(name, percent, &edge_methods()[0]) else { return Vec::new() };
     if !default.clean {
         return Vec::new();
     }
     let fault = |method: &&str| {
-        let of_name = EdgeMethod::from_name(method).expect("a known name");
+        let of_name = edge_method_named(method).expect("a known name");
         match mesh(name, percent, of_name) {
             Ok(report) if report.clean && report.closedness == default.closedness => None,
             Ok(report) => Some(format!("{name}, {method}: {}", report.error_sentences().join("; "))),
@@ -38,7 +43,7 @@ fn models() -> Vec<String> {
 /// which the face turns to and fro; weights of `weight_range` differ by a million.
 #[test]
 fn chords_that_know_nothing_of_their_faces_do_no_harm() {
-    let methods: Vec<&str> = EdgeMethod::entries().iter().map(|e| e.name).collect();
+    let methods: Vec<&str> = edge_methods().iter().map(|e| e.name).collect();
     let wrong: Vec<String> =
         ["no_pcurves", "spline_forms"].iter().flat_map(|name| faults(name, 0.1, &methods)).collect();
     assert!(wrong.is_empty(), "{} of them:\n{}", wrong.len(), wrong.join("\n"));

@@ -3,9 +3,12 @@
 //! The survey of the Blender wiki tells of a tessellator that subdivides trimming curves but takes the points of trimming polylines as
 //! they are: on a curved surface, where a straight line of parameters is no straight line in space, its edges are far off.
 
+#![cfg(feature = "methods")]
+
 use chordal::mesh::Origin;
+use chordal::methods::strategy_named;
 use chordal::nurbs::DVec3;
-use chordal::{Job, JobOptions, Outcome, Strategy, Tolerance};
+use chordal::{Job, JobOptions, Outcome, Tolerance};
 use std::path::PathBuf;
 
 /// A trim with few, long sides in the plane of parameters.
@@ -39,7 +42,7 @@ fn spline(degree: usize) -> String {
 }
 
 /// A bicubic sheet, 10 wide, with a bump 4 high.
-fn mesh(name: &str, trim: &str, strategy: Strategy) -> Outcome {
+fn mesh(name: &str, trim: &str, strategy: &str) -> Outcome {
     let height = |i: usize, j: usize| if (1..3).contains(&i) && (1..3).contains(&j) { 4.0 } else { 0.0 };
     let place = |k: usize| {
         format!(
@@ -62,7 +65,7 @@ fn mesh(name: &str, trim: &str, strategy: Strategy) -> Outcome {
     let options = JobOptions::default()
         .with_tolerance(Tolerance::Millimetres(0.01))
         .with_angle(None)
-        .with_strategy(strategy);
+        .with_fill_method(strategy_named(strategy).expect("a known name").fill_method());
     chordal::run(&Job::new(path).with_options(options)).expect("a mesh")
 }
 
@@ -87,20 +90,20 @@ fn fewest_chords(tolerance: f64) -> f64 {
 
 #[test]
 fn a_polyline_is_subdivided_as_finely_as_a_curve() {
-    for strategy in [Strategy::Default, Strategy::Recursive, Strategy::Bezier] {
+    for strategy in ["default", "recursive", "bezier"] {
         let given = [("polyline", polyline(&DIAMOND)), ("degree_1", spline(1)), ("degree_3", spline(3))];
-        let meshes = given.map(|(name, trim)| mesh(&format!("{name}_{strategy:?}"), &trim, strategy));
+        let meshes = given.map(|(name, trim)| mesh(&format!("{name}_{strategy}"), &trim, strategy));
         let counts = meshes.each_ref().map(samples_of_edges);
         // Four straight sides over a bump: left alone they would have no sample at all. All sagittas allow at least this many chords.
-        assert!((counts[0] + 4) as f64 >= 4.0 * fewest_chords(0.01), "{strategy:?}: {counts:?}");
-        assert!(counts.iter().all(|c| c.abs_diff(counts[0]) <= 4), "{strategy:?}: {counts:?}");
+        assert!((counts[0] + 4) as f64 >= 4.0 * fewest_chords(0.01), "{strategy}: {counts:?}");
+        assert!(counts.iter().all(|c| c.abs_diff(counts[0]) <= 4), "{strategy}: {counts:?}");
         for outcome in &meshes {
-            assert!(outcome.report.clean, "{strategy:?}: {:?}", outcome.report.error_sentences());
+            assert!(outcome.report.clean, "{strategy}: {:?}", outcome.report.error_sentences());
             assert!(outcome.report.boundary_error.is_some_and(|e| e > 0.002 && e <= 0.01));
             assert!(outcome.report.proven_error <= Some(0.01));
         }
         let areas = meshes.each_ref().map(|outcome| outcome.report.area);
-        assert!(areas.iter().all(|a| (a / areas[0] - 1.0).abs() < 1e-3), "{strategy:?}: {areas:?}");
+        assert!(areas.iter().all(|a| (a / areas[0] - 1.0).abs() < 1e-3), "{strategy}: {areas:?}");
     }
 }
 
@@ -114,7 +117,7 @@ fn chords_pass_over_the_points_of_dense_polylines() {
         (0.5 + 0.4 * cosine, 0.5 + 0.25 * sine)
     };
     let points: Vec<(f64, f64)> = (0..=DENSE).map(on_ellipse).collect();
-    let outcome = mesh("dense", &polyline(&points), Strategy::Default);
+    let outcome = mesh("dense", &polyline(&points), "default");
     let samples = samples_of_edges(&outcome);
     // The ellipse of semi-axes 4 and 2.5 has ∮√κ ds = 11.06; over √8ε that is 39 chords, and the sheet adds to them.
     assert!((39..DENSE / 5).contains(&samples), "{samples}");

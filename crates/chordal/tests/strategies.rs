@@ -1,16 +1,19 @@
 //! Every strategy on the whole corpus: closed where the file is, within tolerance where proven, and made by its own parts.
 
-use chordal::{Bound, Closedness, Job, JobOptions, Report, Strategy, Tolerance};
+#![cfg(feature = "methods")]
+
+use chordal::methods::{StrategyEntry, strategies};
+use chordal::{Bound, Closedness, Job, JobOptions, Report, Tolerance};
 use std::path::{Path, PathBuf};
 
 fn corpus(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step")
 }
 
-fn mesh(name: &str, strategy: Strategy, bound: Bound) -> Result<Report, String> {
+fn mesh(name: &str, strategy: &StrategyEntry, bound: Bound) -> Result<Report, String> {
     let options = JobOptions::default()
         .with_tolerance(Tolerance::Percent(0.5))
-        .with_strategy(strategy)
+        .with_fill_method(strategy.fill_method())
         .with_bound(bound);
     chordal::run(&Job::new(corpus(name)).with_options(options)).map(|o| o.report).map_err(|e| e.to_string())
 }
@@ -27,12 +30,12 @@ fn models() -> Vec<String> {
 fn every_strategy_meshes_what_the_default_meshes() {
     let mut wrong = Vec::new();
     for name in models().iter().filter(|n| !SLOW.contains(&n.as_str())) {
-        let Ok(default) = mesh(name, Strategy::Default, Bound::Proven) else { continue };
+        let Ok(default) = mesh(name, &strategies()[0], Bound::Proven) else { continue };
         if !default.clean {
             continue;
         }
-        for entry in Strategy::entries().iter().skip(1) {
-            match mesh(name, entry.strategy, Bound::Proven) {
+        for entry in strategies().iter().skip(1) {
+            match mesh(name, entry, Bound::Proven) {
                 Ok(report) if report.clean && report.closedness == default.closedness => {}
                 Ok(report) => {
                     wrong.push(format!("{name}, {}: {}", entry.name, report.error_sentences().join("; ")))
@@ -47,15 +50,15 @@ fn every_strategy_meshes_what_the_default_meshes() {
 #[test]
 fn estimated_meshes_are_closed_too_and_not_larger() {
     for name in ["bracket", "fillet_bspline", "torus_hole", "blade"] {
-        for entry in Strategy::entries().iter().skip(1) {
-            let estimated = mesh(name, entry.strategy, Bound::Estimated).expect("a mesh");
+        for entry in strategies().iter().skip(1) {
+            let estimated = mesh(name, entry, Bound::Estimated).expect("a mesh");
             assert!(
                 estimated.closedness != Some(Closedness::Leaking),
                 "{name}, {}: {:?}",
                 entry.name,
                 estimated.error_sentences()
             );
-            let proven = mesh(name, entry.strategy, Bound::Proven).expect("a mesh");
+            let proven = mesh(name, entry, Bound::Proven).expect("a mesh");
             // A face of which nothing could be proven is the default's.
             let left = proven.stages.iter().any(|s| s.name.starts_with("faces left to the default"));
             assert!(left || estimated.triangles <= proven.triangles, "{name}, {}", entry.name);
@@ -85,9 +88,9 @@ fn own_part(strategy: &str) -> &'static str {
 
 #[test]
 fn each_strategy_runs_its_own_parts_and_no_others() {
-    let names: Vec<&str> = Strategy::entries().iter().map(|e| e.name).collect();
-    for entry in Strategy::entries() {
-        let report = mesh("fillet_bspline", entry.strategy, Bound::Proven).expect("a mesh");
+    let names: Vec<&str> = strategies().iter().map(|e| e.name).collect();
+    for entry in strategies() {
+        let report = mesh("fillet_bspline", entry, Bound::Proven).expect("a mesh");
         let ran = |part: &str| report.stages.iter().find(|s| s.name == part);
         let own = own_part(entry.name);
         let stage =

@@ -17,7 +17,7 @@ fn corpus(name: &str) -> PathBuf {
 fn meshed(name: &str, strategy: &str, bulk: Bulk) -> Report {
     let options = JobOptions::default()
         .with_tolerance(Tolerance::Percent(0.05))
-        .with_strategy(chordal::Strategy::from_name(strategy).expect("a name"))
+        .with_fill_method(chordal::methods::strategy_named(strategy).expect("a name").fill_method())
         .with_bulk(bulk);
     chordal::run(&Job::new(corpus(name)).with_options(options)).expect("it can be meshed").report
 }

@@ -5,44 +5,11 @@
 //! by whole periods; where a loop passes through a pole, both sides' parameters are kept as two chart points of one
 //! vertex.
 
-use crate::doubled::SharedEdge;
 use crate::edges::EdgeSamples;
+use crate::keys::{ChartPoint, Key, Segment, SharedEdge};
 use crate::surface::{FaceSurface, Near};
-use chordal_brep::{Coedge, Face, Loop, Part, Pcurve};
+use chordal_brep::{Coedge, Face, Loop, MeshIssue, Part, Pcurve};
 use chordal_nurbs::{DVec2, DVec3};
-
-/// Which mesh vertex a chart point is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) enum Key {
-    /// A vertex of the part.
-    Vertex(u32),
-    /// Sample `1..` of an edge.
-    Edge(u32, u32),
-    /// A point of this face alone.
-    Private(u32),
-}
-
-/// What the polygon runs along from one chart point to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Segment {
-    Edge {
-        edge: u32,
-        chord: u32,
-    },
-    /// A cut through the surface that only this face knows; both sides have the same vertices.
-    Seam,
-    /// A line of parameter space that is one point.
-    Pole,
-}
-
-/// A corner of a polygon in the chart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ChartPoint {
-    pub uv: DVec2,
-    pub key: Key,
-    /// The segment to the next point.
-    pub segment: Segment,
-}
 
 /// A loop before it is closed in the chart.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +22,7 @@ pub(crate) struct OpenLoop {
 }
 
 /// What the stages of one face share.
+#[derive(Debug)]
 pub(crate) struct FaceContext<'a, 's> {
     pub part: &'a Part,
     pub face: &'a Face,
@@ -62,12 +30,6 @@ pub(crate) struct FaceContext<'a, 's> {
     pub edges: &'a [EdgeSamples],
     /// Inner edges that it must do without: another face has them.
     pub doubled: &'a [SharedEdge],
-    /// Finer edges did not keep the loops from crossing: mesh the face as it is.
-    pub last_resort: bool,
-    /// The last round: take what there is.
-    pub accept: bool,
-    /// An early round: chords with bounds far beyond the tolerance are looked at closely before they are made finer.
-    pub closer: bool,
     /// Points nearer together than this are the same point.
     pub resolution: f64,
 }
@@ -94,8 +56,8 @@ impl FaceContext<'_, '_> {
     /// All loops of the face with the interior on their left in the chart, and the vertices of vertex loops.
     ///
     /// # Errors
-    /// A sentence, where a loop cannot be followed.
-    pub fn loops(&self) -> Result<(Vec<OpenLoop>, Vec<u32>), String> {
+    /// Where a loop cannot be followed.
+    pub fn loops(&self) -> Result<(Vec<OpenLoop>, Vec<u32>), MeshIssue> {
         let mut loops = Vec::new();
         let mut lone = Vec::new();
         for a_loop in &self.face.loops {
@@ -289,7 +251,7 @@ impl FaceContext<'_, '_> {
     }
 
     /// Joins the coedges of a loop.
-    fn join(&self, coedges: &[Coedge]) -> Result<Option<OpenLoop>, String> {
+    fn join(&self, coedges: &[Coedge]) -> Result<Option<OpenLoop>, MeshIssue> {
         let mut runs: Vec<Run> = Vec::with_capacity(coedges.len());
         let mut near = None;
         for coedge in coedges {
@@ -297,7 +259,7 @@ impl FaceContext<'_, '_> {
             // Only an edge that is a single point has no chords.
             if of_edge.is_empty() && self.part.edges[coedge.edge.index()].curve.is_some() {
                 let source = self.part.edges[coedge.edge.index()].source;
-                return Err(format!("its edge {source} cannot be sampled"));
+                return Err(MeshIssue::EdgeWithoutSamples { edge: source });
             }
             near = of_edge.last().and_then(|run| run.uv.last().copied()).or(near);
             runs.extend(of_edge);
@@ -309,7 +271,7 @@ impl FaceContext<'_, '_> {
             let after = (i + 1) % runs.len();
             let (end, start) = (runs[i].keys[runs[i].keys.len() - 1], runs[after].keys[0]);
             if end != start && runs.len() > 1 {
-                return Err(format!("its loop is not closed between edges {} and {}", i + 1, after + 1));
+                return Err(MeshIssue::LoopNotClosed { edge: i + 1, next: after + 1 });
             }
         }
         // Begin behind a pole, so that the jump along it closes the loop.

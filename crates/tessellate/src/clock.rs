@@ -1,57 +1,94 @@
-//! CPU time, where the system tells: on a machine with other work to do, wall time says how busy that is.
+//! Time, where the platform has a clock: stopwatches of CPU time, and deadlines.
+//!
+//! On `wasm32-unknown-unknown` there is no clock and reading one panics. There every stopwatch shows zero and no deadline
+//! passes.
 
-use std::time::Instant;
+use std::time::Duration;
 
-/// Whose time counts.
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+fn now() -> Option<std::time::Instant> {
+    Some(std::time::Instant::now())
+}
+
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+fn now() -> Option<std::time::Instant> {
+    None
+}
+
+/// Which time a stopwatch counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Whose {
+enum Kind {
     Thread,
     Process,
+    Wall,
 }
 
 /// Seconds since it was made.
 #[derive(Clone, Copy, Debug)]
 pub struct Stopwatch {
-    whose: Whose,
+    kind: Kind,
     cpu: Option<f64>,
-    wall: Instant,
+    wall: Option<std::time::Instant>,
 }
 
 impl Stopwatch {
-    /// CPU time of this thread; it must be read by the same one.
+    /// CPU time of this thread; it must be read by the same one. On a machine with other work, wall time would show how
+    /// busy the machine is.
     pub fn of_thread() -> Self {
-        Self::new(Whose::Thread)
+        Self::new(Kind::Thread)
     }
 
     /// CPU time of the process, all threads.
     pub fn of_process() -> Self {
-        Self::new(Whose::Process)
+        Self::new(Kind::Process)
     }
 
-    fn new(whose: Whose) -> Self {
-        Self { whose, cpu: cpu_seconds(whose), wall: Instant::now() }
+    /// Wall time.
+    pub fn of_wall() -> Self {
+        Self::new(Kind::Wall)
     }
 
-    /// Seconds of CPU time since it was made, wall time where the system does not tell.
+    fn new(kind: Kind) -> Self {
+        Self { kind, cpu: cpu_seconds(kind), wall: now() }
+    }
+
+    /// Seconds since it was made; wall time where the system does not tell CPU time, zero where it has no clock.
     pub fn seconds(&self) -> f64 {
-        let cpu = cpu_seconds(self.whose).zip(self.cpu).map(|(now, then)| now - then);
-        cpu.unwrap_or_else(|| self.wall.elapsed().as_secs_f64())
+        let cpu = cpu_seconds(self.kind).zip(self.cpu).map(|(now, then)| now - then);
+        cpu.unwrap_or_else(|| self.wall.map_or(0.0, |wall| wall.elapsed().as_secs_f64()))
     }
 }
 
 #[cfg(unix)]
-fn cpu_seconds(whose: Whose) -> Option<f64> {
-    let id = match whose {
-        Whose::Thread => rustix::time::ClockId::ThreadCPUTime,
-        Whose::Process => rustix::time::ClockId::ProcessCPUTime,
+fn cpu_seconds(kind: Kind) -> Option<f64> {
+    let id = match kind {
+        Kind::Thread => rustix::time::ClockId::ThreadCPUTime,
+        Kind::Process => rustix::time::ClockId::ProcessCPUTime,
+        Kind::Wall => return None,
     };
     let time = rustix::time::clock_gettime(id);
     Some(time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9)
 }
 
 #[cfg(not(unix))]
-fn cpu_seconds(_: Whose) -> Option<f64> {
+fn cpu_seconds(_: Kind) -> Option<f64> {
     None
+}
+
+/// A moment after which work is given up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadline(std::time::Instant);
+
+impl Deadline {
+    /// The moment this long from now; none where the platform has no clock.
+    pub fn after(time: Duration) -> Option<Self> {
+        now().map(|now| Self(now + time))
+    }
+
+    /// True from that moment on.
+    pub fn is_over(self) -> bool {
+        now().is_some_and(|now| now > self.0)
+    }
 }
 
 #[cfg(test)]
@@ -62,13 +99,25 @@ mod tests {
     #[cfg(unix)]
     fn sleeping_costs_nothing_and_work_does() {
         let watch = Stopwatch::of_thread();
-        std::thread::sleep(std::time::Duration::from_millis(50));
+        let wall = Stopwatch::of_wall();
+        std::thread::sleep(Duration::from_millis(50));
         let asleep = watch.seconds();
         assert!(asleep < 0.04, "{asleep}");
+        assert!(wall.seconds() >= 0.05);
         let mut x = 0.5f64;
         while watch.seconds() < asleep + 0.01 {
             x = std::hint::black_box(x.sin());
         }
         assert!(Stopwatch::of_process().seconds() >= 0.0);
+    }
+
+    #[test]
+    fn a_deadline_passes() {
+        let deadline = Deadline::after(Duration::from_millis(5)).expect("this platform has a clock");
+        assert!(!deadline.is_over());
+        std::thread::sleep(Duration::from_millis(10));
+        assert!(deadline.is_over());
+        let later = Deadline::after(Duration::from_secs(1000)).expect("this platform has a clock");
+        assert!(!later.is_over());
     }
 }

@@ -12,7 +12,8 @@
 //!
 //! Chords that touch along a line do not cross, but leave no area between them ([`shut_corners`]).
 
-use crate::chart::{FaceContext, Segment};
+use crate::chart::FaceContext;
+use crate::keys::Segment;
 use crate::triangulate::orient;
 use crate::unroll::Chart;
 use chordal_nurbs::{DVec2, DVec3};

@@ -1,39 +1,62 @@
 //! From the exact model of a part to a watertight mesh whose distance to it is proven.
 //!
-//! heal parameters ([`chart`], [`unroll`]) → discretise edges ([`edges`]) → size ([`metric`]) → place points ([`place`])
-//! → trim + triangulate ([`triangulate`]) → prove ([`prove`]) → stitch ([`stitch`]).
-//! A face that finds an edge too coarse asks for it; requests are merged per round and only the faces touched run again.
+//! The stages, with their modules:
+//!
+//! 1. Prepare the surfaces of the part ([`part_job`]).
+//! 2. Sample the edges, each once for all of its faces ([`edges`]).
+//! 3. Mesh the faces, in rounds ([`rounds`]). For one face ([`attempts`]): unroll its loops into one chart ([`chart`],
+//!    [`unroll`]), triangulate them ([`triangulate`]), fill the inside ([`fill_loop`], [`rows`]), and prove every triangle
+//!    ([`prove`]). A face that finds an edge too coarse asks for finer chords; the requests of a round are merged, and only
+//!    the faces at those edges run again.
+//! 4. Join the faces ([`orient`], [`stitch`]).
+//!
+//! How hard a face is tried, and in which order remedies are taken, is written down in [`effort`]. Other crates may fill
+//! faces and cut edges in their own ways ([`method`]).
 
+mod attempts;
 mod bulk;
 mod chart;
 mod clock;
-mod crease;
 mod crossings;
-mod doubled;
-mod edge_method;
+mod default_fill;
+mod edge_use;
 mod edges;
-mod face;
-mod grid;
-mod looseness;
+mod effort;
+mod face_mesh;
+mod face_result;
+mod fallback;
+mod fill_loop;
+mod fill_method;
+mod keys;
+mod limits;
 mod lower_bound;
+pub mod method;
 mod metric;
 mod options;
 mod orient;
-mod place;
+mod panics;
+mod part;
+mod part_job;
+mod pcurve_gap;
+mod poles;
 mod prove;
+mod quads;
 mod report;
 mod rounds;
+mod rows;
+mod shared_inner_edges;
+mod snap;
 mod stitch;
-mod strategy;
 mod surface;
+mod trace;
 mod triangulate;
 mod unroll;
 
 pub use bulk::{Bulk, Evaluator};
 pub use clock::Stopwatch;
-pub use edge_method::{Criterion, EdgeMethod, EdgeMethodEntry, LoopRow, loop_rows};
-pub use options::{Bound, Cancel, Options};
+pub use limits::Bound;
+pub use options::{Cancel, Options};
+pub use panics::remember_panic;
+pub use part::tessellate_part;
 pub use report::{FaceReport, PartReport, Phases, StageSeconds};
-pub use rounds::tessellate_part;
-pub use strategy::trace::Trace;
-pub use strategy::{Cut, Fill, Strategy, StrategyEntry, Stretch};
+pub use trace::Trace;

@@ -1,10 +1,11 @@
 //! The sizing metric: lengths in it are counted in allowed chords, so an edge of length 1 is as long as it may be.
 
+use crate::limits::Limits;
 use chordal_nurbs::{DVec2, DVec3, SurfaceJet};
 
 /// A symmetric positive semi-definite form on parameter space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Metric {
+pub struct Metric {
     pub uu: f64,
     pub uv: f64,
     pub vv: f64,
@@ -63,19 +64,6 @@ impl Metric {
         let sum = metrics.iter().fold(Metric::default(), |sum, &m| sum.plus(m, 1.0));
         Metric::default().plus(sum, 1.0 / N as f64)
     }
-}
-
-/// What an edge of the mesh must not exceed, in the part's units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Limits {
-    /// Distance of facets inside a face.
-    pub tolerance: f64,
-    /// Sagitta of a chord of the model's edges, and distance of the facets that touch one where that is larger.
-    pub boundary: f64,
-    /// Turn of the normal between the ends of an edge, radians.
-    pub angle: f64,
-    /// Length of an edge.
-    pub length: f64,
 }
 
 /// The curvature of a surface at a point, ready to be sized.

@@ -1,24 +1,15 @@
 //! What is asked of a mesh, in the units of the part.
 
 use crate::bulk::Bulk;
-use crate::edge_method::EdgeMethod;
-use crate::strategy::Strategy;
+use crate::edge_use::EdgeSplitter;
+use crate::fill_method::FillMethod;
+use crate::limits::Bound;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How the error of a facet is judged.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Bound {
-    /// By an upper bound: the tolerance is a promise.
-    #[default]
-    Proven,
-    /// By samples, as most meshers do: faster, no promise.
-    Estimated,
-}
-
 /// What is asked of a mesh.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
     /// Largest distance between mesh and surface, in the part's units.
@@ -32,10 +23,12 @@ pub struct Options {
     /// Longest mesh edge, in the part's units.
     pub max_edge: Option<f64>,
     pub bound: Bound,
-    pub strategy: Strategy,
-    /// Keep the quadrilaterals of the strategy, where it makes some, as pairs of triangles.
+    /// A method that fills faces, in place of the default one.
+    pub fill_method: Option<Arc<dyn FillMethod>>,
+    /// Keep the quadrilaterals of the fill method, where it makes some, as pairs of triangles.
     pub quads: bool,
-    pub edge_method: EdgeMethod,
+    /// A method that cuts edges into chords, in place of the default one.
+    pub edge_splitter: Option<Arc<dyn EdgeSplitter>>,
     /// Who evaluates many points of one surface at once.
     pub bulk: Bulk,
     /// Report the cells of subdivisions, to be drawn.
@@ -54,9 +47,9 @@ impl Options {
             angle: None,
             max_edge: None,
             bound: Bound::Proven,
-            strategy: Strategy::Default,
+            fill_method: None,
             quads: false,
-            edge_method: EdgeMethod::Default,
+            edge_splitter: None,
             bulk: Bulk::default(),
             record_cells: false,
             face_timeout: None,
@@ -83,16 +76,16 @@ impl Options {
         self.bound = bound;
         self
     }
-    pub fn with_strategy(mut self, strategy: Strategy) -> Self {
-        self.strategy = strategy;
+    pub fn with_fill_method(mut self, method: Option<Arc<dyn FillMethod>>) -> Self {
+        self.fill_method = method;
         self
     }
     pub fn with_quads(mut self, quads: bool) -> Self {
         self.quads = quads;
         self
     }
-    pub fn with_edge_method(mut self, method: EdgeMethod) -> Self {
-        self.edge_method = method;
+    pub fn with_edge_splitter(mut self, splitter: Option<Arc<dyn EdgeSplitter>>) -> Self {
+        self.edge_splitter = splitter;
         self
     }
     pub fn with_bulk(mut self, bulk: Bulk) -> Self {

@@ -5,9 +5,9 @@
 //! directions. Faces without doubt stay as they are; from them the others are settled outwards, those first most of whose
 //! boundary is settled, each by the majority of its settled chords.
 
-use crate::chart::Key;
 use crate::edges::EdgeSamples;
-use crate::face::FaceResult;
+use crate::face_result::FaceResult;
+use crate::keys::Key;
 use chordal_brep::{BodyKind, Part, Shell};
 use chordal_nurbs::DVec3;
 

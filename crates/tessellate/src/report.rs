@@ -1,6 +1,7 @@
 //! What was done to a part, face by face.
 
-use crate::strategy::trace::Trace;
+use crate::trace::Trace;
+use chordal_brep::MeshIssue;
 use chordal_nurbs::UvBox;
 
 /// One face.
@@ -28,7 +29,7 @@ pub struct FaceReport {
     /// The cells of its subdivision in the chart, where they were asked for.
     pub cells: Vec<UvBox>,
     /// Why the face has no triangles, or not good enough ones.
-    pub failed: Option<String>,
+    pub failed: Option<MeshIssue>,
     /// The face is so thin that it has no area at the model's own accuracy; it has no triangles and needs none.
     pub zero_area: bool,
 }
@@ -62,6 +63,8 @@ pub struct PartReport {
     pub faces: Vec<FaceReport>,
     /// Which parts made polylines of the edges, where that was not left to the default.
     pub edge_trace: Trace,
+    /// Edges that a fault of this program left without samples, by their index in the part.
+    pub edge_faults: Vec<(u32, MeshIssue)>,
     /// Rounds in which faces asked for finer edges.
     pub rounds: usize,
     pub seconds: StageSeconds,

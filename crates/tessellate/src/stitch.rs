@@ -1,8 +1,8 @@
 //! Stitch: vertices of faces become shared positions, by identity and never by distance.
 
-use crate::chart::Key;
 use crate::edges::EdgeSamples;
-use crate::face::FaceResult;
+use crate::face_result::FaceResult;
+use crate::keys::Key;
 use chordal_brep::Part;
 use chordal_mesh::{Corner, FaceMesh, Origin, PartMesh};
 

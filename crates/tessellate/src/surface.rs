@@ -4,7 +4,8 @@ use chordal_nurbs::{DVec2, DVec3, Pole, Surface, SurfaceInverter, SurfaceJet, Uv
 use std::sync::OnceLock;
 
 /// The surface of one face with what is asked of it over and over.
-pub(crate) struct FaceSurface<'a> {
+#[derive(Debug)]
+pub struct FaceSurface<'a> {
     pub surface: &'a Surface,
     pub periods: [Option<f64>; 2],
     pub poles: Vec<Pole>,
@@ -18,7 +19,7 @@ pub(crate) struct FaceSurface<'a> {
 
 /// Where on a surface a point lies, and how far off it the last one lay that was searched for all over it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Near {
+pub struct Near {
     pub uv: DVec2,
     pub distance: f64,
 }

@@ -11,17 +11,21 @@
 //! The two sides of a seam have the same vertices, one period apart in the chart; all points of a pole line are one vertex.
 //! The outer loop is found by area, not by what the file calls it.
 
+mod crease;
 mod winding;
 
-use crate::chart::{ChartPoint, FaceContext, Key, OpenLoop, Segment};
-use crate::grid::{Grid, settled};
-use crate::metric::{Limits, Sizing};
+use crate::chart::{FaceContext, OpenLoop};
+use crate::keys::{ChartPoint, Key, Segment};
+use crate::limits::Limits;
+use crate::metric::Sizing;
+use crate::snap::{Grid, settled};
+use chordal_brep::MeshIssue;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 use winding::seam_beside;
 
 /// The face as polygons: outer loops counter-clockwise, holes clockwise.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Chart {
+pub struct Chart {
     pub points: Vec<ChartPoint>,
     /// Runs of `points`.
     pub loops: Vec<(u32, u32)>,
@@ -34,9 +38,6 @@ pub(crate) struct Chart {
     pub grid: Grid,
 }
 
-/// A seam or natural side is cut into chords a little shorter than allowed.
-pub(crate) const SEAM_CHORD: f64 = 0.9;
-
 /// A chord of a seam is halved at most this often.
 const SEAM_DEPTH: usize = 12;
 
@@ -44,13 +45,13 @@ impl Chart {
     /// Unrolls the face; seams get chords of this length in the metric. `creased`: cut along its surface's creases.
     ///
     /// # Errors
-    /// A sentence, where the loops bound no region.
-    pub fn new(
+    /// Where the loops bound no region.
+    pub(crate) fn new(
         context: &FaceContext<'_, '_>,
         limits: &Limits,
         seam_chord: f64,
         creased: bool,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, MeshIssue> {
         let (loops, lone) = context.loops()?;
         let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new(), reversed: false };
         let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
@@ -239,10 +240,10 @@ impl Unroll<'_, '_> {
     }
 
     /// The whole domain of the surface.
-    fn natural_boundary(&mut self, holes: &[OpenLoop]) -> Result<Vec<ChartPoint>, String> {
+    fn natural_boundary(&mut self, holes: &[OpenLoop]) -> Result<Vec<ChartPoint>, MeshIssue> {
         let domain = self.context.surface.domain();
         if !domain.is_finite() {
-            return Err("it has no boundary and its surface is unbounded".into());
+            return Err(MeshIssue::UnboundedSurface);
         }
         let UvBox { mut min, mut max } = domain;
         for axis in 0..2 {
@@ -321,7 +322,7 @@ impl Unroll<'_, '_> {
         &mut self,
         outer: Option<Vec<ChartPoint>>,
         mut plain: Vec<OpenLoop>,
-    ) -> Result<Vec<Vec<ChartPoint>>, String> {
+    ) -> Result<Vec<Vec<ChartPoint>>, MeshIssue> {
         let outer = match outer {
             Some(mut polygon) => {
                 if area(&polygon) < 0.0 {
@@ -334,7 +335,7 @@ impl Unroll<'_, '_> {
             None => {
                 let size = |l: &OpenLoop| area(&l.points).abs();
                 let largest = (0..plain.len()).max_by(|&a, &b| size(&plain[a]).total_cmp(&size(&plain[b])));
-                let mut open = plain.remove(largest.ok_or("none of its loops encloses an area")?);
+                let mut open = plain.remove(largest.ok_or(MeshIssue::NoArea)?);
                 if area(&open.points) < 0.0 {
                     self.reversed = true;
                     open.reverse();

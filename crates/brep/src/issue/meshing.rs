@@ -1,29 +1,185 @@
 //! What can be found while a face or an edge is meshed.
 
-use serde::Serialize;
+use super::words::count;
+use crate::Source;
+use chordal_nurbs::NurbsError;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// Found while a face or an edge is meshed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum MeshIssue {
-    /// A sentence without a variant of its own yet. The variant goes when every stage is typed.
-    Other(String),
+    /// The reader made no surface for the face.
+    NotRead {
+        /// The reader's reason.
+        reason: String,
+    },
+    /// The job was cancelled before the face was finished.
+    Cancelled,
+    /// The time limit of one face was reached.
+    OutOfTime {
+        /// Triangles, or cells of a subdivision, that the face had then.
+        elements: usize,
+    },
+    /// The limit of triangles of one face was reached.
+    TooManyTriangles {
+        /// Triangles that the face had then.
+        triangles: usize,
+    },
+    /// The limit of cells of a subdivision was reached.
+    TooManyCells {
+        /// The limit.
+        most: usize,
+    },
+    /// An edge of the face has no samples.
+    EdgeWithoutSamples {
+        /// The edge in the file.
+        edge: Source,
+    },
+    /// Two consecutive edges of a loop do not share a vertex.
+    LoopNotClosed {
+        /// Position of the first of the two in its loop, from 1.
+        edge: usize,
+        /// Position of the second, from 1.
+        next: usize,
+    },
+    /// The loops cross each other, however finely the edges are sampled.
+    LoopsCross,
+    /// No loop encloses an area.
+    NoArea,
+    /// The face has no loop and its surface is unbounded.
+    UnboundedSurface,
+    /// The face is unbounded: a single loop encircles the surface.
+    UnboundedFace,
+    /// A loop encircles a surface that is not closed in that direction.
+    EncirclesOpenSurface,
+    /// A loop encircles the surface more than once, or in both directions.
+    EncirclesRepeatedly,
+    /// More than two loops encircle the surface.
+    ManyEncirclingLoops {
+        /// How many.
+        loops: usize,
+    },
+    /// Two loops encircle the surface in different directions.
+    EncirclingLoopsDiffer,
+    /// The seam of the face cannot be cut finely enough.
+    SeamTooCoarse,
+    /// The edges of the face were still too coarse after the last round.
+    EdgesTooCoarse {
+        /// Rounds that were made.
+        rounds: usize,
+    },
+    /// The method needs a NURBS form of the surface, and there is none.
+    NoNurbsForm {
+        /// Why the surface has none.
+        #[serde(serialize_with = "as_sentence")]
+        error: NurbsError,
+    },
+    /// A method of another crate cannot mesh the face.
+    MethodFailed {
+        /// The method.
+        method: String,
+        /// Its reason.
+        reason: String,
+    },
+    /// A fault of this program: a panic.
+    InternalError {
+        /// The text of the panic.
+        message: String,
+        /// The place in the source code, where it is known.
+        location: Option<String>,
+    },
 }
 
 impl MeshIssue {
     /// A stable name for programs to match.
     pub fn code(&self) -> &'static str {
         match self {
-            MeshIssue::Other(_) => "other",
+            MeshIssue::NotRead { .. } => "face-not-read",
+            MeshIssue::Cancelled => "cancelled",
+            MeshIssue::OutOfTime { .. } => "out-of-time",
+            MeshIssue::TooManyTriangles { .. } => "too-many-triangles",
+            MeshIssue::TooManyCells { .. } => "too-many-cells",
+            MeshIssue::EdgeWithoutSamples { .. } => "edge-without-samples",
+            MeshIssue::LoopNotClosed { .. } => "loop-not-closed",
+            MeshIssue::LoopsCross => "loops-cross",
+            MeshIssue::NoArea => "no-area",
+            MeshIssue::UnboundedSurface => "unbounded-surface",
+            MeshIssue::UnboundedFace => "unbounded-face",
+            MeshIssue::EncirclesOpenSurface => "encircles-open-surface",
+            MeshIssue::EncirclesRepeatedly => "encircles-repeatedly",
+            MeshIssue::ManyEncirclingLoops { .. } => "many-encircling-loops",
+            MeshIssue::EncirclingLoopsDiffer => "encircling-loops-differ",
+            MeshIssue::SeamTooCoarse => "seam-too-coarse",
+            MeshIssue::EdgesTooCoarse { .. } => "edges-too-coarse",
+            MeshIssue::NoNurbsForm { .. } => "no-nurbs-form",
+            MeshIssue::MethodFailed { .. } => "method-failed",
+            MeshIssue::InternalError { .. } => "internal-error",
         }
+    }
+
+    /// True for a fault of this program, which should be reported to its authors.
+    pub fn is_internal(&self) -> bool {
+        matches!(self, MeshIssue::InternalError { .. })
     }
 }
 
 impl fmt::Display for MeshIssue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            MeshIssue::Other(sentence) => f.write_str(sentence),
+            MeshIssue::NotRead { reason } => f.write_str(reason),
+            MeshIssue::Cancelled => f.write_str("cancelled"),
+            MeshIssue::OutOfTime { elements } => {
+                write!(f, "time limit of the face reached at {}", count(*elements, "triangle", "triangles"))
+            }
+            MeshIssue::TooManyTriangles { triangles } => {
+                write!(f, "the face needs more than {}", count(*triangles, "triangle", "triangles"))
+            }
+            MeshIssue::TooManyCells { most } => {
+                write!(f, "the face needs more than {}", count(*most, "cell", "cells"))
+            }
+            MeshIssue::EdgeWithoutSamples { edge } => write!(f, "edge {edge} cannot be sampled"),
+            MeshIssue::LoopNotClosed { edge, next } => {
+                write!(f, "loop is not closed: edges {edge} and {next} of it share no vertex")
+            }
+            MeshIssue::LoopsCross => f.write_str("loops cross each other"),
+            MeshIssue::NoArea => f.write_str("no loop encloses an area"),
+            MeshIssue::UnboundedSurface => {
+                f.write_str("the face has no boundary and its surface is unbounded")
+            }
+            MeshIssue::UnboundedFace => {
+                f.write_str("the face is unbounded: a single loop encircles the surface")
+            }
+            MeshIssue::EncirclesOpenSurface => {
+                f.write_str("a loop encircles a surface that is not closed in that direction")
+            }
+            MeshIssue::EncirclesRepeatedly => {
+                f.write_str("a loop encircles the surface more than once, or in both directions")
+            }
+            MeshIssue::ManyEncirclingLoops { loops } => {
+                write!(f, "{} encircle the surface; at most 2 are possible", count(*loops, "loop", "loops"))
+            }
+            MeshIssue::EncirclingLoopsDiffer => {
+                f.write_str("two loops encircle the surface in different directions")
+            }
+            MeshIssue::SeamTooCoarse => f.write_str("the seam of the face cannot be cut finely enough"),
+            MeshIssue::EdgesTooCoarse { rounds } => {
+                write!(f, "edges are still too coarse after {}", count(*rounds, "round", "rounds"))
+            }
+            MeshIssue::NoNurbsForm { error } => write!(f, "the surface has no NURBS form: {error}"),
+            MeshIssue::MethodFailed { method, reason } => write!(f, "method `{method}` failed: {reason}"),
+            MeshIssue::InternalError { message, location } => {
+                write!(f, "internal error: {message}")?;
+                if let Some(location) = location {
+                    write!(f, " (at {location})")?;
+                }
+                f.write_str("; this is a bug in Chordal, please report it with the file")
+            }
         }
     }
+}
+
+fn as_sentence<S: Serializer>(error: &NurbsError, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(error)
 }

@@ -4,7 +4,7 @@ use super::Entry;
 use crate::names::face_kind;
 use crate::placement::PartUse;
 use crate::report::*;
-use chordal_brep::{Face, FaceGeometry, Issue, IssueKind, MeshIssue, ReadIssue, ResultIssue, Severity};
+use chordal_brep::{Face, FaceGeometry, Issue, IssueKind, ReadIssue, ResultIssue, Severity};
 use chordal_tessellate::FaceReport;
 
 /// Adds every face of a part. `rounding`: how far placing and writing may move a vertex, in millimetres.
@@ -91,9 +91,7 @@ fn outcome(face: &Face, of_face: &FaceReport) -> (FaceStatus, Option<(Severity, 
         return (FaceStatus::Failed, Some((Severity::Error, ReadIssue::Other(reason.clone()).into())));
     }
     match &of_face.failed {
-        Some(reason) => {
-            (FaceStatus::Failed, Some((Severity::Error, MeshIssue::Other(reason.clone()).into())))
-        }
+        Some(issue) => (FaceStatus::Failed, Some((Severity::Error, issue.clone().into()))),
         None if of_face.zero_area => {
             (FaceStatus::ZeroArea, Some((Severity::Note, ResultIssue::ZeroArea.into())))
         }

@@ -1,8 +1,9 @@
 //! Corners: where the tangent of an edge turns at once. Sharp ones are vertices; soft ones, of which polylines through the points of
 //! smooth curves consist, only where a chord may not pass over them.
 
-use super::{EdgeUse, Probes};
-use crate::metric::Limits;
+use super::Probes;
+use crate::edge_use::EdgeUse;
+use crate::limits::Limits;
 use chordal_nurbs::{Curve, Range, Surface};
 
 /// A kink of the tangent of more than this (radians) is a corner.

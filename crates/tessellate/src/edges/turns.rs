@@ -1,8 +1,8 @@
 //! Chords along which a face does not turn further than the limit of angle.
 
-use super::{EdgeUse, split_where};
-use crate::metric::Limits;
-use crate::prove::{TURN_LENGTH, turns_too_far};
+use super::split_where;
+use crate::edge_use::EdgeUse;
+use crate::limits::{Limits, TURN_LENGTH, turns_too_far};
 use chordal_nurbs::{Curve, Range};
 
 /// A chord is halved at most this often for the turn of a face along it.

@@ -1,17 +1,17 @@
 //! How far a facet is off its surface, estimated where nothing is to be proven.
 
-use crate::face::FaceWork;
+use crate::face_mesh::FaceMesh;
 use chordal_nurbs::{Facet, FacetBound};
 
 /// The largest distance at the middle and along the edges: an estimate, below the truth.
-pub(super) fn sampled_bound(work: &FaceWork<'_, '_>, facet: &Facet) -> FacetBound {
+pub(super) fn sampled_bound(face: &FaceMesh<'_, '_>, facet: &Facet) -> FacetBound {
     let [a, b, c] = facet.xyz;
     let Some(n) = (b - a).cross(c - a).try_normalize() else {
         return FacetBound { error: 0.0, edges: [0.0; 3] };
     };
     let at = |weights: [f64; 3]| {
         let uv = facet.uv[0] * weights[0] + facet.uv[1] * weights[1] + facet.uv[2] * weights[2];
-        work.context.surface.point(uv)
+        face.surface().point(uv)
     };
     let edges = std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);

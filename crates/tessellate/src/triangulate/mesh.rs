@@ -10,11 +10,11 @@ use chordal_nurbs::DVec2;
 use rustc_hash::FxHashMap;
 
 /// No neighbour: the edge is on the boundary.
-pub(crate) const NONE: u32 = u32::MAX;
+pub const NONE: u32 = u32::MAX;
 
 /// Where a point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Location {
+pub enum Location {
     Inside(u32),
     /// On the edge opposite this corner of this triangle.
     OnEdge(u32, usize),
@@ -24,7 +24,7 @@ pub(crate) enum Location {
 
 /// A plane triangulation with neighbours; `neighbors[t][i]` lies across the edge opposite corner `i`.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Triangulation {
+pub struct Triangulation {
     pub points: Vec<DVec2>,
     pub triangles: Vec<[u32; 3]>,
     pub neighbors: Vec<[u32; 3]>,

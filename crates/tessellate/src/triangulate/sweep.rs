@@ -22,7 +22,7 @@ use chordal_nurbs::DVec2;
 
 /// Why a polygon could not be triangulated; the vertices near the place where two chains cross.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SweepError {
+pub struct SweepError {
     /// The edge from this vertex to the next in its loop is one of the culprits.
     pub edge: u32,
     /// A vertex that lies on the wrong side of it.
@@ -43,7 +43,7 @@ struct Sweep<'a> {
 /// Triangulates the region to the left of all `loops`, each a run of consecutive `points` (start, end); the outer
 /// ones run counter-clockwise, holes clockwise. Triangles come out counter-clockwise; where vertices touch an edge
 /// or each other some may have no area.
-pub(crate) fn sweep(points: &[DVec2], loops: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, SweepError> {
+pub fn sweep(points: &[DVec2], loops: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, SweepError> {
     let mut next = vec![0; points.len()];
     let mut previous = vec![0; points.len()];
     for &(start, end) in loops {

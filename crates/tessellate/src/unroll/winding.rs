@@ -1,7 +1,9 @@
 //! Polygons from loops that wind round a closed surface: cut open along a seam, in pairs, or closed by a pole.
 
 use super::{Unroll, along_axis, mean, shifted};
-use crate::chart::{ChartPoint, Key, OpenLoop, Segment};
+use crate::chart::OpenLoop;
+use crate::keys::{ChartPoint, Key, Segment};
+use chordal_brep::MeshIssue;
 use chordal_nurbs::DVec2;
 
 impl Unroll<'_, '_> {
@@ -10,16 +12,16 @@ impl Unroll<'_, '_> {
         &mut self,
         mut winding: Vec<OpenLoop>,
         holes: &[OpenLoop],
-    ) -> Result<Vec<ChartPoint>, String> {
+    ) -> Result<Vec<ChartPoint>, MeshIssue> {
         let axis = usize::from(winding[0].winding[0] == 0);
         let across = 1 - axis;
         if winding.len() == 2 && winding[0].winding[across] != 0 {
             return self.slanted_band(winding, holes);
         }
         if winding.iter().any(|l| l.winding[axis].abs() != 1 || l.winding[across] != 0) {
-            return Err("a loop winds round its surface more than once, or both ways".into());
+            return Err(MeshIssue::EncirclesRepeatedly);
         }
-        let period = self.context.surface.periods[axis].ok_or("a loop winds round an open surface")?;
+        let period = self.context.surface.periods[axis].ok_or(MeshIssue::EncirclesOpenSurface)?;
         // Along u the interior is above a loop that runs upwards in u; along v it is on the other side.
         let is_lower = |l: &OpenLoop| (l.winding[axis] > 0) == (axis == 0);
         match winding.len() {
@@ -32,8 +34,7 @@ impl Unroll<'_, '_> {
                         // Nothing closes it on the side it claims: the file has it the wrong way round.
                         a.reverse();
                         self.reversed = true;
-                        self.pole_beyond(across, value, is_lower(&a))
-                            .ok_or("one loop winds round the surface and nothing bounds the other side")?
+                        self.pole_beyond(across, value, is_lower(&a)).ok_or(MeshIssue::UnboundedFace)?
                     }
                 };
                 Ok(self.cap(&a, axis, period, value))
@@ -42,7 +43,7 @@ impl Unroll<'_, '_> {
                 let (a, b) = self.pair(winding, axis);
                 Ok(self.band(&a, &b, along_axis(axis, period * f64::from(a.winding[axis])), holes))
             }
-            n => Err(format!("{n} loops wind round the surface")),
+            loops => Err(MeshIssue::ManyEncirclingLoops { loops }),
         }
     }
 
@@ -66,11 +67,11 @@ impl Unroll<'_, '_> {
         &mut self,
         mut winding: Vec<OpenLoop>,
         holes: &[OpenLoop],
-    ) -> Result<Vec<ChartPoint>, String> {
+    ) -> Result<Vec<ChartPoint>, MeshIssue> {
         let mut b = winding.remove(1);
         let a = winding.remove(0);
         let [Some(pu), Some(pv)] = self.context.surface.periods else {
-            return Err("a loop winds round an open surface".into());
+            return Err(MeshIssue::EncirclesOpenSurface);
         };
         let periods = DVec2::new(pu, pv);
         if b.winding == a.winding {
@@ -83,7 +84,7 @@ impl Unroll<'_, '_> {
         let steps = (-reach..=reach).flat_map(|m| (-reach..=reach).map(move |n| (m, n)));
         let step = steps.filter(|&(m, n)| i * n - j * m == 1).min_by_key(|&(m, n)| m.abs() + n.abs());
         let (Some((m, n)), true) = (step, b.winding == [-i, -j]) else {
-            return Err("its loops wind round the surface in different ways".into());
+            return Err(MeshIssue::EncirclingLoopsDiffer);
         };
         let turns = |(m, n): (i32, i32)| DVec2::new(f64::from(m), f64::from(n));
         let across = |l: &OpenLoop| {

@@ -1,0 +1,102 @@
+//! One face with the edges as they are: attempts, each with more remedies than the last ([`crate::effort`]).
+
+use crate::chart::FaceContext;
+use crate::clock::Deadline;
+use crate::crossings::{coarse_chords, shut_corners};
+use crate::effort::{Effort, Remedy, Setback};
+use crate::face_mesh::{FaceMesh, boundary_triangles, shape};
+use crate::face_result::{FaceResult, Proof};
+use crate::fill_loop::fill_and_prove;
+use crate::limits::Limits;
+use crate::options::{Cancel, Options};
+use crate::prove::Prover;
+use crate::triangulate::clip_ears;
+use crate::unroll::Chart;
+use chordal_brep::MeshIssue;
+use chordal_nurbs::{DVec2, SurfaceBounds, UvBox};
+
+/// Meshes one face, in as many attempts as the ladder of remedies has.
+///
+/// # Errors
+/// Where the face's edges must become finer first, or the face fails.
+pub(crate) fn mesh_face(
+    context: &FaceContext<'_, '_>,
+    limits: &Limits,
+    options: &Options,
+    cancel: &Cancel,
+    mut effort: Effort,
+) -> Result<Box<FaceResult>, Setback> {
+    let any_angle = Limits { angle: f64::INFINITY, ..*limits };
+    loop {
+        let limits = if effort.has(Remedy::AnyAngle) { &any_angle } else { limits };
+        let setback = match attempt(context, limits, options, cancel, effort) {
+            Ok(result) => return Ok(result),
+            Err(setback @ (Setback::CoarseEdges(_) | Setback::Failed(_))) => return Err(setback),
+            Err(setback) => setback,
+        };
+        effort = effort.after(&setback).ok_or(MeshIssue::SeamTooCoarse)?;
+    }
+}
+
+/// One attempt at a face.
+fn attempt(
+    context: &FaceContext<'_, '_>,
+    limits: &Limits,
+    options: &Options,
+    cancel: &Cancel,
+    effort: Effort,
+) -> Result<Box<FaceResult>, Setback> {
+    let deadline = options.face_timeout.and_then(Deadline::after);
+    let edges_are_final = effort.has(Remedy::CrossingLoops);
+    // 1. Unroll the face into one chart.
+    let chart = Chart::new(context, limits, effort.seam_chord(), !effort.has(Remedy::UncutCreases))?;
+    // 2. Triangulate its loops.
+    let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
+    let uv_box = UvBox::from_points(points.iter().copied());
+    let shape = shape(context, limits, uv_box);
+    let (triangles, are_loops_crossing) = match boundary_triangles(&points, &chart, shape) {
+        Ok(triangles) => (triangles, false),
+        Err(culprits) => (crossing_triangles(context, &chart, &points, &culprits, effort)?, true),
+    };
+    let mut face = FaceMesh::new(context, limits, chart, shape, triangles, &options.bulk);
+    // 3. Fill it and prove it.
+    let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
+    let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, effort);
+    if are_loops_crossing && face.is_turned_somewhere() {
+        prover = prover.for_crossing_loops();
+    }
+    let mut proof = fill_and_prove(&mut face, &mut prover, options, edges_are_final)?;
+    // 4. A triangle that is turned over may lie outside of the face, which no distance to the surface would show.
+    if are_loops_crossing && face.is_turned_somewhere() {
+        proof = Proof { error: f64::INFINITY, bound: "none" };
+    } else if !edges_are_final {
+        // 5. Corners without an area between their chords need finer chords.
+        let shut = shut_corners(context, face.chart());
+        if !shut.is_empty() {
+            return Err(Setback::CoarseEdges(shut));
+        }
+    }
+    Ok(Box::new(face.finish(proof, options.bound, options.quads)))
+}
+
+/// Triangles of loops that cross: as good as they can be, where the loops cross in truth.
+///
+/// # Errors
+/// Where finer edges may uncross the loops, or an attempt without cuts along creases may.
+fn crossing_triangles(
+    context: &FaceContext<'_, '_>,
+    chart: &Chart,
+    points: &[DVec2],
+    culprits: &[u32],
+    effort: Effort,
+) -> Result<Vec<[u32; 3]>, Setback> {
+    let coarse = coarse_chords(context, chart, culprits);
+    if !effort.has(Remedy::CrossingLoops) && !coarse.is_empty() {
+        return Err(Setback::CoarseEdges(coarse));
+    }
+    let has_creases = context.surface.creases.iter().any(|creases| !creases.is_empty());
+    if has_creases && !effort.has(Remedy::UncutCreases) {
+        return Err(Setback::Crossing);
+    }
+    Ok(clip_ears(points, &chart.loops).ok_or(MeshIssue::LoopsCross)?)
+}

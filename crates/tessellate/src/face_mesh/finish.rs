@@ -1,0 +1,163 @@
+//! A face's triangles are done: its result, how far its boundary is off its surface, and its share of the lower bound.
+
+use super::{FaceMesh, Shape};
+use crate::face_result::{FaceResult, Proof};
+use crate::keys::{Key, Segment, SharedEdge, is_shareable, sorted};
+use crate::limits::{Bound, Limits};
+use crate::metric::Sizing;
+use crate::quads::pairs;
+use crate::triangulate::NONE;
+use chordal_nurbs::{DVec2, Surface, UvBox};
+
+impl FaceMesh<'_, '_> {
+    /// The edges inside the face that another face may have too.
+    fn inner_edges(&self, keys: &[Key]) -> Vec<SharedEdge> {
+        let collapsed = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|v| keys[v as usize]);
+            a == b || b == c || c == a
+        };
+        let mut inner = Vec::new();
+        for (t, (corners, neighbors)) in self.mesh.triangles.iter().zip(&self.mesh.neighbors).enumerate() {
+            for i in (0..3).filter(|&i| neighbors[i] != NONE && neighbors[i] as usize > t) {
+                let pair = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| keys[v as usize]);
+                // Across a triangle that is not written lies the boundary.
+                let both = !collapsed(*corners) && !collapsed(self.mesh.triangles[neighbors[i] as usize]);
+                if is_shareable(pair) && both {
+                    inner.push(sorted(pair));
+                }
+            }
+        }
+        inner
+    }
+
+    /// Assembles the result.
+    pub(crate) fn finish(mut self, proof: Proof, bound: Bound, keep_quads: bool) -> FaceResult {
+        let gap = self.gap();
+        let curvature_bound = self.curvature_bound();
+        let mut keys: Vec<Key> = (0..self.mesh.points.len() as u32).map(|v| self.key(v)).collect();
+        let mut private = self.chart.private.clone();
+        private.extend_from_slice(&self.vertices.xyz[self.chart.points.len()..]);
+        let reversed = self.context.face.normal_reversed() != self.chart.reversed;
+        let keep = |t: &&[u32; 3]| {
+            let [a, b, c] = t.map(|v| keys[v as usize]);
+            a != b && b != c && c != a
+        };
+        let triangles = self
+            .mesh
+            .triangles
+            .iter()
+            .filter(keep)
+            .map(|&[a, b, c]| if reversed { [a, c, b] } else { [a, b, c] });
+        let mut triangles: Vec<[u32; 3]> = triangles.collect();
+        let quads = if keep_quads { pairs_first(&self.quads, &mut triangles) } else { 0 };
+        let inner = self.inner_edges(&keys);
+        let gap = gap.max(self.separate_pole_corners(&mut triangles, &mut keys));
+        let mut boundary_error = 0.0f64;
+        for point in &self.chart.points {
+            if let Segment::Edge { edge, chord } = point.segment {
+                boundary_error = boundary_error.max(self.context.edges[edge as usize].sag[chord as usize]);
+            }
+        }
+        let proven = bound == Bound::Proven && proof.error.is_finite();
+        let proven_error = if proven { proof.error.max(boundary_error) } else { f64::NAN };
+        let sign = if reversed { -1.0 } else { 1.0 };
+        FaceResult {
+            normals: self.vertices.normals.iter().map(|n| *n * sign).collect(),
+            uv: self.mesh.points,
+            keys,
+            triangles,
+            inner,
+            quads,
+            doubtful: self.chart.reversed,
+            private,
+            proven_error,
+            boundary_error,
+            gap,
+            bound: proof.bound,
+            curvature_bound,
+            trace: self.trace,
+            phases: self.phases,
+            cells: self.cells,
+        }
+    }
+
+    /// The largest distance of a boundary vertex, or of the edge half way along a chord, from the surface.
+    fn gap(&self) -> f64 {
+        let mut gap = 0.0f64;
+        for (i, point) in self.chart.points.iter().enumerate() {
+            gap = gap.max(self.position(point.key).distance(self.vertices.xyz[i]));
+            let Segment::Edge { edge, chord } = point.segment else { continue };
+            let samples = &self.context.edges[edge as usize];
+            let Some(curve) = self.context.part.edges[edge as usize].curve.as_deref() else { continue };
+            let exact = matches!(self.context.surface.surface, Surface::Plane { .. })
+                && matches!(curve, chordal_nurbs::Curve::Line { .. });
+            if !exact {
+                let p = curve.point(0.5 * (samples.t[chord as usize] + samples.t[chord as usize + 1]));
+                let next = self.next_on_boundary(i);
+                let middle = point.uv.midpoint(self.chart.points[next].uv);
+                let uv = self.context.surface.descend(p, middle);
+                gap = gap.max(self.context.surface.point(uv).distance(p));
+            }
+        }
+        gap
+    }
+
+    fn next_on_boundary(&self, i: usize) -> usize {
+        let at = i as u32;
+        let runs_to = self.chart.loops.iter().find(|&&(start, end)| (start..end).contains(&at));
+        match runs_to {
+            Some(&(start, end)) if at + 1 == end => start as usize,
+            _ => i + 1,
+        }
+    }
+
+    /// c·∫√|K| dA / ε over the triangles (`docs/report.md`), or the strips of a singly curved face.
+    fn curvature_bound(&self) -> f64 {
+        let limits = Limits { angle: f64::INFINITY, length: f64::INFINITY, ..*self.limits };
+        match self.shape {
+            Shape::Flat => 0.0,
+            Shape::Singly { axis } => {
+                let bounds = UvBox::from_points(self.mesh.points.iter().copied());
+                let mut d = DVec2::ZERO;
+                d[axis] = bounds.size()[axis] / 16.0;
+                let start = {
+                    let mut s = bounds.center();
+                    s[axis] = bounds.min[axis];
+                    s
+                };
+                let strips: f64 = (0..16)
+                    .map(|k| {
+                        let jet = self.context.surface.jet(start + d * (f64::from(k) + 0.5));
+                        Sizing::new(&jet, &limits).map_or(0.0, |s| s.metric.length(d))
+                    })
+                    .sum();
+                2.0 * (strips - 1e-9).ceil().max(1.0)
+            }
+            Shape::Doubly => self
+                .mesh
+                .triangles
+                .iter()
+                .map(|t| {
+                    let [a, b, c] = t.map(|v| self.mesh.points[v as usize]);
+                    let jet = self.context.surface.jet((a + b + c) / 3.0);
+                    let area = 0.5 * (b - a).perp_dot(c - a).abs();
+                    Sizing::new(&jet, &limits).map_or(0.0, |s| {
+                        let constant = if s.gauss > 0.0 { 0.3849 } else { 0.2236 };
+                        constant * s.gauss.abs().sqrt() * s.area * area / self.limits.tolerance
+                    })
+                })
+                .sum(),
+        }
+    }
+}
+
+/// Brings the halves of quadrilaterals that are still whole to the front, two by two; returns how many there are.
+fn pairs_first(quads: &[[u32; 4]], triangles: &mut Vec<[u32; 3]>) -> usize {
+    let pairs = pairs(quads, triangles);
+    let mut order: Vec<usize> = pairs.iter().flatten().copied().collect();
+    let mut rest = vec![true; triangles.len()];
+    order.iter().for_each(|&t| rest[t] = false);
+    order.extend((0..triangles.len()).filter(|&t| rest[t]));
+    *triangles = order.into_iter().map(|t| triangles[t]).collect();
+    pairs.len()
+}

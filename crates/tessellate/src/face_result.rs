@@ -1,0 +1,62 @@
+//! The triangles of one face, before its vertices are joined with those of its neighbours.
+
+use crate::keys::{Key, SharedEdge};
+use crate::limits::{Bound, Limits};
+use crate::report::Phases;
+use crate::trace::Trace;
+use chordal_brep::MeshIssue;
+use chordal_nurbs::{DVec2, DVec3, UvBox};
+
+/// What is proven of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Proof {
+    /// Largest distance between the face and its triangles; infinite where nothing is proven, NaN for an estimate.
+    pub error: f64,
+    /// Which bound proved it.
+    pub bound: &'static str,
+}
+
+/// A face's triangles before vertices are joined with the neighbours'.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FaceResult {
+    pub uv: Vec<DVec2>,
+    pub keys: Vec<Key>,
+    pub normals: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// Edges between triangles that other faces may have too.
+    pub inner: Vec<SharedEdge>,
+    /// The first `2 · quads` triangles are halves of quadrilaterals.
+    pub quads: usize,
+    /// The outer loop runs against the face's sense: the neighbours tell which of the two is right.
+    pub doubtful: bool,
+    /// Positions of the keys that are private.
+    pub private: Vec<DVec3>,
+    pub proven_error: f64,
+    /// The largest distance of a chord of an edge.
+    pub boundary_error: f64,
+    pub gap: f64,
+    pub bound: &'static str,
+    /// c·∫√|K| dA / ε, and the strips of a singly curved face.
+    pub curvature_bound: f64,
+    /// Which parts ran, and how long.
+    pub trace: Trace,
+    pub phases: Phases,
+    /// The cells of a subdivision, where they are asked for.
+    pub cells: Vec<UvBox>,
+}
+
+impl FaceResult {
+    /// Makes the face face the other way.
+    pub fn turn_over(&mut self) {
+        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        self.normals.iter_mut().for_each(|n| *n = -*n);
+    }
+}
+
+/// What became of a face.
+pub(crate) type Meshed = Result<Box<FaceResult>, MeshIssue>;
+
+/// True for a face without a proof where one is asked for: an error of NaN is none either.
+pub(crate) fn is_unproven(result: &FaceResult, limits: &Limits, bound: Bound) -> bool {
+    bound == Bound::Proven && !(result.proven_error <= limits.largest())
+}

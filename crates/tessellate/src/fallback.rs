@@ -1,0 +1,54 @@
+//! Faces that the methods of the options could not prove: the default means mesh them in further passes.
+//!
+//! Each pass starts from the edges. Where a file is loose, loops cross the sooner the finer they are, and a method may
+//! have asked for chords that the default can do without. A pass counts only if it leaves fewer faces unproven.
+
+use crate::part_job::PartJob;
+use crate::rounds::{Pass, PassResult};
+use crate::shared_inner_edges::{separate, unproven_faces};
+
+/// Passes in which the default takes over: first the unproven faces, then with their neighbours, which may be the ones
+/// that ask for finer edges. Further passes would only add the neighbours' neighbours.
+const PASSES: usize = 2;
+
+/// Meshes the part once more where methods left faces unproven; nothing where the options name no method.
+pub(crate) fn leave_to_default(job: &PartJob<'_>, mut result: PassResult) -> PassResult {
+    if job.options.fill_method.is_none() && job.options.edge_splitter.is_none() {
+        return result;
+    }
+    let count = |faces: &[bool]| faces.iter().filter(|&&f| f).count();
+    let mut by_default = vec![false; result.faces.len()];
+    let mut unproven = unproven_faces(job, &result.faces);
+    for number in 0..PASSES {
+        if count(&unproven) == 0 || job.cancel.is_cancelled() {
+            break;
+        }
+        by_default.iter_mut().zip(&unproven).for_each(|(by_default, unproven)| *by_default |= unproven);
+        if number > 0 {
+            by_default = with_neighbours(job, &by_default);
+        }
+        let pass = Pass::with_default_for(job, by_default.clone());
+        let mut again = pass.run(&|_| ());
+        separate(&pass, &mut again);
+        let still_unproven = unproven_faces(job, &again.faces);
+        if count(&still_unproven) >= count(&unproven) {
+            break;
+        }
+        for (face, _) in again.faces.iter_mut().zip(&by_default).filter(|(_, by_default)| **by_default) {
+            if let Ok(face) = face {
+                face.trace.add("faces left to the default methods", 1);
+            }
+        }
+        (result, unproven) = (again, still_unproven);
+    }
+    result
+}
+
+/// These faces and all that share an edge with them.
+fn with_neighbours(job: &PartJob<'_>, faces: &[bool]) -> Vec<bool> {
+    let mut all = faces.to_vec();
+    for edge in (0..job.part.edges.len()).filter(|&edge| job.faces_at(edge).any(|f| faces[f])) {
+        job.faces_at(edge).for_each(|f| all[f] = true);
+    }
+    all
+}

@@ -1,0 +1,77 @@
+//! Triangles at poles, turned so that they have an area.
+//!
+//! A side of the chart that is one point of space is one corner for every triangle that touches it. A triangle between that point
+//! and two vertices one above the other then lies in a meridian and covers nothing:
+//!
+//! ```text
+//!   ══════════p══      p is the whole line; p–a–b is flat in space. The edge to b, the farther one, is flipped
+//!   a╌╌╌╌╌╱╱  │        to a–r, and p–a–r spans what the line does.
+//!   │   ╱ ╱   │
+//!   b╌╌╌╌╱╌╌╌╌r
+//! ```
+
+use crate::face_mesh::FaceMesh;
+use crate::triangulate::{NONE, orient};
+
+/// Flips edges at poles until every triangle there spans the pole's line the right way, as far as possible; borders of cells
+/// that end in the pole as well, since all places of its line are one. Returns the number of flips.
+pub fn open_out(face: &mut FaceMesh<'_, '_>) -> usize {
+    if !face.touches_pole() {
+        return 0;
+    }
+    let mut flips = 0;
+    let mut queue: Vec<u32> = (0..face.mesh().triangles.len() as u32).collect();
+    let most = 8 * queue.len();
+    while let Some(t) = queue.pop() {
+        if flips < most
+            && let Some(i) = flat_at_pole(face, t)
+            && let Some(other) = flippable(face, t, i)
+        {
+            face.mesh_mut().flip_edge(t, i);
+            flips += 1;
+            // What could not be flipped before may have a better neighbour now.
+            for t in [t, other] {
+                queue.push(t);
+                queue.extend(face.mesh().neighbors[t as usize].iter().filter(|&&n| n != NONE));
+            }
+        }
+    }
+    face.mesh_mut().changed.clear();
+    flips
+}
+
+/// Where a triangle with one corner on a pole spans nothing, or the wrong way: the corner opposite the edge to flip.
+fn flat_at_pole(face: &FaceMesh<'_, '_>, t: u32) -> Option<usize> {
+    let c = face.mesh().triangles[t as usize];
+    let at_pole = c.map(|v| face.is_at_pole(v));
+    if at_pole.iter().filter(|&&p| p).count() != 1 {
+        return None;
+    }
+    let i = at_pole.iter().position(|&p| p)?;
+    let corner = c[i];
+    let pole = face.surface().pole_at(face.xyz(corner), face.context().resolution)?;
+    let along = 1 - pole.axis;
+    let [a, b] = [1, 2].map(|k| face.mesh().points[c[(i + k) % 3] as usize]);
+    let mut apex = face.mesh().points[corner as usize];
+    apex[along] = 0.5 * (a[along] + b[along]);
+    let longest = (a - b).abs().max_element().max((apex - a).abs().max_element());
+    let spans = (b - a)[along].abs() > 1e-9 * longest;
+    if spans && orient(apex, a, b) > 0.0 {
+        return None;
+    }
+    let height = |p: chordal_nurbs::DVec2| (p[pole.axis] - apex[pole.axis]).abs();
+    // Opposite the nearer of the two lies the edge from the pole to the farther one.
+    Some(if height(a) < height(b) { (i + 1) % 3 } else { (i + 2) % 3 })
+}
+
+fn flippable(face: &FaceMesh<'_, '_>, t: u32, i: usize) -> Option<u32> {
+    let mesh = face.mesh();
+    let c = mesh.triangles[t as usize];
+    let (apex, a, b) = (c[i], c[(i + 1) % 3], c[(i + 2) % 3]);
+    let other = mesh.neighbors[t as usize][i];
+    if other == NONE {
+        return None;
+    }
+    let j = (0..3).find(|&j| mesh.neighbors[other as usize][j] == t)?;
+    mesh.can_flip(apex, a, b, mesh.triangles[other as usize][j]).then_some(other)
+}
