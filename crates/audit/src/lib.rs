@@ -1,8 +1,8 @@
 //! The audit: trusts nothing upstream.
 //!
 //! Everything is recomputed from the exact model and the mesh: that every face is there and bounded by exactly the
-//! chords of its edges ([`boundary`]), that edges are sampled on their curves and in order ([`edges`]), that each shell is
-//! closed and oriented by the identity of its vertices ([`shell`]), and that the error bounds hold ([`prove`]).
+//! chords of its edges (`boundary`), that edges are sampled on their curves and in order (`edges`), that each shell is
+//! closed and oriented by the identity of its vertices (`shell`), and that the error bounds hold (`prove`).
 //! Of two meshes of which nothing else is known, [`largest_distance`] gives the distance by branch and bound.
 
 mod area;

@@ -1,7 +1,7 @@
 //! Methods of filling faces, by name.
 //!
 //! Every part of a method that ran leaves its name in the trace of the face, which the report shows.
-//! `docs/strategies.md` says which document each method comes from.
+//! `docs/methods.md` says which document each method comes from.
 
 use crate::fill::Cut;
 use crate::fill::bezier::BezierQuads;

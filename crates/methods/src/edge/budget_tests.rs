@@ -151,7 +151,7 @@ proptest! {
     }
 }
 
-/// κ over what was found, and chords. Run with `--ignored --nocapture`; the table stands in docs/strategies.md.
+/// κ over what was found, and chords. Run with `--ignored --nocapture`; the table stands in docs/methods.md.
 #[test]
 #[ignore = "prints a table, tests nothing"]
 fn tightness_of_the_budget() {

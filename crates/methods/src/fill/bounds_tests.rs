@@ -181,7 +181,7 @@ fn print_quantiles<const N: usize>(columns: [&str; N], ratios: &[Vec<[f64; N]>])
 }
 
 /// How tight bounds are: the bound over what was found, median and 95th percentile. Run with `--ignored --nocapture`; the table
-/// stands in docs/strategies.md.
+/// stands in docs/methods.md.
 #[test]
 #[ignore = "prints a table, tests nothing"]
 fn tightness() {
