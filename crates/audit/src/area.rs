@@ -25,17 +25,15 @@ use crate::chart::Chart;
 use crate::context::Context;
 use crate::findings::Log;
 use chordal_brep::{AuditIssue, Coedge, Loop};
-use chordal_nurbs::{DVec2, DVec3, Surface};
+use chordal_nurbs::{Curve, DVec2, DVec3, Frame, Surface};
 use rustc_hash::FxHashMap;
+use std::f64::consts::{PI, TAU};
 
 /// The two areas may differ by this share: far above rounding and far below any wrong region.
 const SHARE: f64 = 0.01;
 
 /// Steps of Gauss–Newton per point; the point before is near, and most points need two.
 const STEPS: usize = 8;
-
-/// Points along a chord at which its curve is followed.
-const POINTS: usize = 2;
 
 /// One loop as followed in the chart.
 #[derive(Clone, Copy, Debug, Default)]
@@ -156,7 +154,7 @@ fn follow(
     a_loop: &Loop,
     places: &FxHashMap<u32, DVec2>,
 ) -> Option<Followed> {
-    let (positions, curves) = points_of(context, a_loop)?;
+    let (positions, middles) = points_of(context, a_loop)?;
     if positions.iter().any(|&p| is_at_pole(chart, context, p)) {
         return None;
     }
@@ -164,9 +162,9 @@ fn follow(
     let mut walk = Walk { chart, uv: start, off: 0.0 };
     let mut corners = Vec::with_capacity(positions.len() + 1);
     corners.push(walk.step(context.mesh.positions[positions[0] as usize])?);
-    for (i, between) in curves.iter().enumerate() {
-        for &p in between {
-            walk.step(p)?;
+    for (i, middle) in middles.iter().enumerate() {
+        if let Some(p) = middle {
+            walk.step(*p)?;
         }
         let next = positions[(i + 1) % positions.len()];
         corners.push(walk.step(context.mesh.positions[next as usize])?);
@@ -180,8 +178,8 @@ fn is_at_pole(chart: &Chart<'_>, context: &Context<'_>, position: u32) -> bool {
     chart.poles.iter().any(|pole| pole.point.distance(p) <= near)
 }
 
-/// The positions along a loop, and the points of the exact curves between each and the next.
-fn points_of(context: &Context<'_>, a_loop: &Loop) -> Option<(Vec<u32>, Vec<Vec<DVec3>>)> {
+/// The positions along a loop, and the middle of the exact curve between each and the next, where it is not straight.
+fn points_of(context: &Context<'_>, a_loop: &Loop) -> Option<(Vec<u32>, Vec<Option<DVec3>>)> {
     let mut positions = Vec::new();
     let mut between = Vec::new();
     match a_loop {
@@ -189,7 +187,7 @@ fn points_of(context: &Context<'_>, a_loop: &Loop) -> Option<(Vec<u32>, Vec<Vec<
         Loop::Polygon { vertices, .. } => {
             for v in vertices {
                 positions.push(context.vertex_at.get(v.index()).copied().flatten()?);
-                between.push(Vec::new());
+                between.push(None);
             }
         }
         Loop::Edges { coedges, .. } => {
@@ -205,7 +203,7 @@ fn add_coedge(
     context: &Context<'_>,
     coedge: &Coedge,
     positions: &mut Vec<u32>,
-    between: &mut Vec<Vec<DVec3>>,
+    between: &mut Vec<Option<DVec3>>,
 ) -> Option<()> {
     let index = coedge.edge.index();
     let Some(curve) = &context.part.edges[index].curve else { return Some(()) };
@@ -218,9 +216,8 @@ fn add_coedge(
     for k in 0..chords {
         let (from, to) = if coedge.forward { (k, k + 1) } else { (chords - k, chords - k - 1) };
         positions.push(line[from]);
-        let share = |i: usize| i as f64 / POINTS as f64;
-        let points = (1..POINTS).map(|i| curve.point(at[from] + (at[to] - at[from]) * share(i)));
-        between.push(points.collect());
+        let is_straight = matches!(**curve, Curve::Line { .. });
+        between.push((!is_straight).then(|| curve.point(0.5 * (at[from] + at[to]))));
     }
     Some(())
 }
@@ -235,21 +232,58 @@ struct Walk<'a, 'b> {
 impl Walk<'_, '_> {
     /// The parameters of the point of the surface nearest to `p`, near those of the point before.
     fn step(&mut self, p: DVec3) -> Option<DVec2> {
-        match self.chart.surface {
+        let (uv, off) = match self.chart.surface {
             Surface::Plane { frame } => {
                 let d = p - frame.origin;
-                self.uv = DVec2::new(d.dot(frame.x), d.dot(frame.y));
-                return Some(self.uv);
+                (DVec2::new(d.dot(frame.x), d.dot(frame.y)), 0.0)
             }
-            Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Sphere { .. } => {
-                self.uv = self.chart.surface.invert(p, Some(self.uv));
+            Surface::Cylinder { frame, radius } => self.ring(frame, p, |_, z| z, |_| (*radius, 1.0)),
+            Surface::Cone { frame, radius, half_angle } => {
+                self.ring(frame, p, |_, z| z, |v| (radius + v * half_angle.tan(), 1.0))
             }
-            _ => self.uv = self.descend(p)?,
-        }
-        let (s, du, dv) = self.chart.surface.jet1(self.chart.wrap.apply(self.uv));
-        let slowest = du.length().min(dv.length());
-        self.off = self.off.max(s.distance(p) / slowest);
-        self.off.is_finite().then_some(self.uv)
+            Surface::Sphere { frame, radius } if *radius > 0.0 => {
+                self.ring(frame, p, |rho, z| z.atan2(rho), |v| (radius * v.cos(), *radius))
+            }
+            Surface::Torus { frame, major, minor } if major > minor && *minor > 0.0 => {
+                let v = |rho: f64, z: f64| {
+                    let angle = z.atan2(rho - major);
+                    angle + TAU * ((self.uv.y - angle) / TAU).round()
+                };
+                let (uv, _) = self.ring(frame, p, v, |_| (*major, *minor));
+                let local = frame.local(p);
+                let off = local.z.hypot(local.x.hypot(local.y) - major) - minor;
+                (uv, off.abs() / minor.min(major - minor))
+            }
+            _ => {
+                let uv = self.descend(p)?;
+                let (s, du, dv) = self.chart.surface.jet1(self.chart.wrap.apply(uv));
+                (uv, s.distance(p) / du.length().min(dv.length()))
+            }
+        };
+        self.uv = uv;
+        self.off = self.off.max(off);
+        self.off.is_finite().then_some(uv)
+    }
+
+    /// On a surface of circles about the frame's axis: `v` of the distance from the axis and the height, and at v the
+    /// radius of the circle and the speed along v.
+    fn ring(
+        &self,
+        frame: &Frame,
+        p: DVec3,
+        v: impl Fn(f64, f64) -> f64,
+        at: impl Fn(f64) -> (f64, f64),
+    ) -> (DVec2, f64) {
+        let local = frame.local(p);
+        let rho = local.x.hypot(local.y);
+        let v = v(rho, local.z);
+        let (radius, speed) = at(v);
+        // Beyond the apex of a cone the angle is that of the other side.
+        let side = if radius < 0.0 { PI } else { 0.0 };
+        let angle = local.y.atan2(local.x) + side;
+        let u = angle + TAU * ((self.uv.x - angle) / TAU).round();
+        let off = (rho - radius.abs()).abs() / radius.abs().min(speed);
+        (DVec2::new(u, v), off)
     }
 
     /// Gauss–Newton from the point before, within the domain: beyond it the surface stands still.

@@ -1,9 +1,9 @@
 //! A tree of boxes, split at the median of their centres: pairs of boxes that meet, without looking at all pairs.
 
-use chordal_nurbs::{Box3, DVec3};
+use chordal_nurbs::Box3;
 
 /// Boxes a leaf holds: below about this many, testing all pairs is cheaper than descending.
-const LEAF: usize = 4;
+const LEAF: usize = 8;
 
 /// Items with boxes, prepared for pairs.
 #[derive(Debug, Default)]
@@ -110,15 +110,18 @@ fn meet(a: &Box3, b: &Box3) -> bool {
 }
 
 fn build(items: &mut [(Box3, u32)], first: usize, nodes: &mut Vec<Node>) {
-    let bounds = items.iter().fold(Box3::EMPTY, |all, item| all.union(item.0));
+    let mut bounds = Box3::EMPTY;
+    let mut middles = Box3::EMPTY;
+    for (of_item, _) in items.iter() {
+        bounds = bounds.union(*of_item);
+        middles = middles.including(of_item.min + of_item.max);
+    }
     let index = nodes.len();
     nodes.push(Node { bounds, first: first as u32, count: items.len() as u32, second: 0 });
     if items.len() <= LEAF {
         return;
     }
-    let middles = items.iter().map(|item| item.0.min + item.0.max);
-    let (low, high) = middles.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
-    let axis = (high - low).max_position();
+    let axis = (middles.max - middles.min).max_position();
     let middle = items.len() / 2;
     let key = |item: &(Box3, u32)| item.0.min[axis] + item.0.max[axis];
     items.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.1.cmp(&b.1)));
@@ -131,6 +134,7 @@ fn build(items: &mut [(Box3, u32)], first: usize, nodes: &mut Vec<Node>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::DVec3;
     use proptest::prelude::*;
 
     fn boxes() -> impl Strategy<Value = Vec<Box3>> {

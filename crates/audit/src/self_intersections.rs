@@ -68,15 +68,15 @@ impl FacetsOfFace {
         let mesh = &context.mesh.faces[face];
         let facet = |t: &[u32; 3]| {
             let corners = t.map(|c| mesh.corners[c as usize].position);
-            Facet3 { corners, xyz: corners.map(|p| context.mesh.positions[p as usize]) }
+            Facet3::new(corners, corners.map(|p| context.mesh.positions[p as usize]))
         };
         let facets: Vec<Facet3> = mesh.triangles.iter().map(facet).collect();
-        let bounds = Box3::from_points(facets.iter().flat_map(|f| f.xyz));
+        let bounds = facets.iter().fold(Box3::EMPTY, |all, f| all.union(f.bounds()));
         Self { face: face as u32, facets, bounds, tree: OnceLock::new() }
     }
 
     fn tree(&self) -> &BoxTree {
-        self.tree.get_or_init(|| BoxTree::new(self.facets.iter().map(|f| Box3::from_points(f.xyz))))
+        self.tree.get_or_init(|| BoxTree::new(self.facets.iter().map(Facet3::bounds)))
     }
 
     fn cuts_with(&self, other: &Self) -> usize {

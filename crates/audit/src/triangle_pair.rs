@@ -15,58 +15,96 @@
 //!
 //! Not found: cuts that run exactly through vertices and sides only, which rounding of coordinates makes rare.
 
-use chordal_nurbs::{DVec2, DVec3};
+use chordal_nurbs::{Box3, DVec2, DVec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 type Triangle = [DVec3; 3];
 
-/// A triangle with the indices of its corners.
+/// The rounding of n·(p − a) relative to the largest coordinates of the two sides and of p − a: Shewchuk's bound of
+/// orient3d, 7.8e-16 times a sum of six products of three coordinates, and no sum of six is larger than six times
+/// the largest. Beyond it the sign of the plain product is right.
+const FILTER: f64 = 5e-15;
+
+/// A triangle with the indices of its corners, prepared for many comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet3 {
-    pub corners: [u32; 3],
-    pub xyz: Triangle,
+    corners: [u32; 3],
+    xyz: Triangle,
+    /// Its normal, not of unit length.
+    normal: DVec3,
+    /// The product of the largest coordinates of the two sides that span the normal.
+    size: f64,
+}
+
+impl Facet3 {
+    pub fn new(corners: [u32; 3], xyz: Triangle) -> Self {
+        let (d, e) = (xyz[1] - xyz[0], xyz[2] - xyz[0]);
+        let size = d.abs().max_element() * e.abs().max_element();
+        Self { corners, xyz, normal: d.cross(e), size }
+    }
+
+    /// The smallest box around it.
+    pub fn bounds(&self) -> Box3 {
+        let [a, b, c] = self.xyz;
+        Box3 { min: a.min(b).min(c), max: a.max(b).max(c) }
+    }
+
+    /// Positive, negative or zero as a point is on one side of the plane, on the other, or in it.
+    fn side_of(&self, p: DVec3) -> f64 {
+        let d = p - self.xyz[0];
+        let side = self.normal.dot(d);
+        if side.abs() > FILTER * self.size * d.abs().max_element() {
+            // The sign of `orient3d`, which is positive below the plane.
+            return -side;
+        }
+        exact_side(&self.xyz, p)
+    }
 }
 
 /// True where the two triangles cut each other.
 pub(crate) fn cut_each_other(s: &Facet3, t: &Facet3) -> bool {
-    // The corners of `s` that `t` has as well, and those of `t` that `s` has.
-    let own = [0, 1, 2].map(|i| t.corners.contains(&s.corners[i]));
-    let other = [0, 1, 2].map(|i| s.corners.contains(&t.corners[i]));
-    match own.iter().filter(|&&shared| shared).count() {
-        0 => cut_apart(&s.xyz, &t.xyz),
-        1 => cut_at_corner(&s.xyz, &t.xyz, first(&own), first(&other)),
-        2 => folded(&s.xyz, &t.xyz, first(&own.map(|o| !o)), first(&other.map(|o| !o))),
+    // The corners of `s` that `t` has as well, and those of `t` that `s` has, as bits.
+    let (mut own, mut other) = (0usize, 0usize);
+    for (i, c) in s.corners.iter().enumerate() {
+        let same = usize::from(*c == t.corners[0])
+            | usize::from(*c == t.corners[1]) << 1
+            | usize::from(*c == t.corners[2]) << 2;
+        own |= usize::from(same != 0) << i;
+        other |= same;
+    }
+    // A triangle with the same corner twice has no inside; it is reported as degenerate.
+    match own.count_ones() {
+        n if n != other.count_ones() => false,
+        0 => cut_apart(s, t),
+        1 => cut_at_corner(s, t, own.trailing_zeros() as usize, other.trailing_zeros() as usize),
+        2 => folded(s, t, own.trailing_ones() as usize, other.trailing_ones() as usize),
         // The same triangle twice is reported as a duplicate.
         _ => false,
     }
 }
 
-fn first(of: &[bool; 3]) -> usize {
-    of.iter().position(|&b| b).unwrap_or(0)
-}
-
-fn side_of(plane: &Triangle, p: DVec3) -> f64 {
+fn exact_side(plane: &Triangle, p: DVec3) -> f64 {
     let at = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     orient3d(at(plane[0]), at(plane[1]), at(plane[2]), at(p))
 }
 
 /// No corner in common.
-fn cut_apart(s: &Triangle, t: &Triangle) -> bool {
-    let of_s = s.map(|p| side_of(t, p));
+fn cut_apart(s: &Facet3, t: &Facet3) -> bool {
+    let of_s = s.xyz.map(|p| t.side_of(p));
     if on_one_side(&of_s) {
         return false;
     }
-    let of_t = t.map(|p| side_of(s, p));
+    let of_t = t.xyz.map(|p| s.side_of(p));
     if of_s == [0.0; 3] {
-        return overlap_in_plane(s, t);
+        return overlap_in_plane(&s.xyz, &t.xyz);
     }
     if on_one_side(&of_t) {
         return false;
     }
     let sides = [(0, 1), (1, 2), (2, 0)];
     sides.iter().any(|&(i, j)| {
-        (of_s[i] * of_s[j] < 0.0 && through_inside(s[i], s[j], t))
-            || (of_t[i] * of_t[j] < 0.0 && through_inside(t[i], t[j], s))
+        (!on_same_side(of_s[i], of_s[j]) && through_inside(s.xyz[i], s.xyz[j], &t.xyz))
+            || (!on_same_side(of_t[i], of_t[j]) && through_inside(t.xyz[i], t.xyz[j], &s.xyz))
     })
 }
 
@@ -78,37 +116,46 @@ fn on_one_side(sides: &[f64; 3]) -> bool {
 
 /// True where the line from `a` to `b`, which lie on different sides of the plane, passes through the inside.
 fn through_inside(a: DVec3, b: DVec3, [p, q, r]: &Triangle) -> bool {
-    let turns = [side_of(&[a, b, *p], *q), side_of(&[a, b, *q], *r), side_of(&[a, b, *r], *p)];
+    let turns = [exact_side(&[a, b, *p], *q), exact_side(&[a, b, *q], *r), exact_side(&[a, b, *r], *p)];
     turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0)
 }
 
 /// One corner in common: only the side opposite to it can pass through the inside of the other triangle.
-fn cut_at_corner(s: &Triangle, t: &Triangle, i: usize, j: usize) -> bool {
-    let (b, c) = (s[(i + 1) % 3], s[(i + 2) % 3]);
-    let (d, e) = (t[(j + 1) % 3], t[(j + 2) % 3]);
-    let (of_b, of_c) = (side_of(t, b), side_of(t, c));
+fn cut_at_corner(s: &Facet3, t: &Facet3, i: usize, j: usize) -> bool {
+    let (b, c) = (s.xyz[(i + 1) % 3], s.xyz[(i + 2) % 3]);
+    let (of_b, of_c) = (t.side_of(b), t.side_of(c));
     if of_b == 0.0 && of_c == 0.0 {
-        return overlap_in_plane(s, t);
+        return overlap_in_plane(&s.xyz, &t.xyz);
     }
-    if of_b * of_c >= 0.0 {
+    if on_same_side(of_b, of_c) {
         return false;
     }
-    if side_of(s, d) * side_of(s, e) >= 0.0 {
+    let (d, e) = (t.xyz[(j + 1) % 3], t.xyz[(j + 2) % 3]);
+    if on_same_side(s.side_of(d), s.side_of(e)) {
         return false;
     }
-    through_inside(b, c, t) || through_inside(d, e, s)
+    through_inside(b, c, &t.xyz) || through_inside(d, e, &s.xyz)
+}
+
+/// True where neither or only one of two points is strictly on a side of its own.
+fn on_same_side(a: f64, b: f64) -> bool {
+    !((a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0))
 }
 
 /// Two corners in common; `i` and `j` are the corners that are not. A side in common is cut only by a fold onto
 /// itself.
-fn folded(s: &Triangle, t: &Triangle, i: usize, j: usize) -> bool {
-    if side_of(s, t[j]) != 0.0 {
+fn folded(s: &Facet3, t: &Facet3, i: usize, j: usize) -> bool {
+    if s.side_of(t.xyz[j]) != 0.0 {
         return false;
     }
-    let (a, b) = (s[(i + 1) % 3], s[(i + 2) % 3]);
-    let flat = Projection::of(s);
+    let (a, b) = (s.xyz[(i + 1) % 3], s.xyz[(i + 2) % 3]);
+    let flat = Projection::of(&s.xyz);
     let turn = |p: DVec3| flat.turn(a, b, p);
-    turn(s[i]) * turn(t[j]) > 0.0
+    on_same_strict_side(turn(s.xyz[i]), turn(t.xyz[j]))
+}
+
+fn on_same_strict_side(a: f64, b: f64) -> bool {
+    (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
 }
 
 /// Both lie in one plane: true where their insides overlap.
@@ -164,7 +211,7 @@ mod tests {
     use super::*;
 
     fn facet(corners: [u32; 3], xyz: [[f64; 3]; 3]) -> Facet3 {
-        Facet3 { corners, xyz: xyz.map(DVec3::from) }
+        Facet3::new(corners, xyz.map(DVec3::from))
     }
 
     /// A triangle in z = 0 with its inside around (1, 1).
