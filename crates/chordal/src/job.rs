@@ -138,7 +138,9 @@ fn run_stages(job: &Job) -> Result<Outcome, JobError> {
     // 6. Account: what was done, what is proven, what went wrong.
     let found = Findings { model: &model, sewn: &sewn, resolved: &resolved, parts: &parts, audits: &audits };
     let mut report = account(input_report(job, &model, &resolved), &job.options, &found);
-    if report.triangles == 0 {
+    // Faces that have no area need no triangles: that is no failure.
+    let needs_none = report.error_sentences().is_empty() && report.faces.zero_area > 0;
+    if report.triangles == 0 && !needs_none {
         let (faces, first) = (report.faces.total, report.error_sentences().into_iter().next());
         let first = first.unwrap_or_else(|| "they have no area, or are never placed".into());
         return Err(JobError::NothingMeshed { path: job.input.clone(), faces, first });

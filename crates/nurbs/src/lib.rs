@@ -59,7 +59,7 @@ pub use invert_surface::{Inversion, SurfaceInverter};
 pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_surface::NurbsSurface;
 pub use passes::BasisTable;
-pub use surface::{Pole, Surface, SurfaceJet, SurfaceKind, TransformedSurface};
+pub use surface::{Pole, PositiveSurface, Surface, SurfaceJet, SurfaceKind, TransformedSurface};
 pub use trim::{ChordCriterion, ChordCut, LiftOptions, LiftedPiece, PatchPiece};
 pub use uv_box::{Range, UvBox};
 pub use vector::Vector;

@@ -1,6 +1,7 @@
 //! Non-uniform rational B-spline surfaces.
 
 mod memo;
+mod spans;
 
 use crate::basis::{self, Basis};
 use crate::{NurbsError, Range, SurfaceJet, UvBox, Vector, tensor};

@@ -3,10 +3,12 @@
 mod creases;
 mod offset;
 mod poles;
+mod signs;
 mod swept;
 mod transform;
 
 pub use poles::Pole;
+pub use signs::PositiveSurface;
 pub use transform::TransformedSurface;
 
 use crate::conic::wrapped;
@@ -14,6 +16,9 @@ use crate::curve::CLOSED;
 use crate::{Curve, Frame, NurbsSurface, Range, UvBox};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Distances to the axis below this part of a torus' minor radius are rounding.
+const ROUNDED: f64 = 1e-14;
 
 /// A point of a surface with its derivatives up to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +69,8 @@ pub enum Surface {
         frame: Frame,
         radius: f64,
     },
-    /// `origin + (R + r cos v)(cos u x + sin u y) + r sin v z`; `major` may be less than `minor` (lemon, apple).
+    /// `origin + (R + r cos v)(cos u x + sin u y) + r sin v z`. Where |R| < r the torus meets its axis, and the surface
+    /// is the part with R + r cos v ≥ 0: an apple for R > 0, a lemon for R < 0.
     Torus {
         frame: Frame,
         major: f64,
@@ -176,15 +182,18 @@ impl Surface {
                 let side = sign(*radius, slope.signum());
                 Some(n.normalize() * sign(radius + v * slope, side))
             }
-            Surface::Sphere { frame, radius } => {
-                // Beyond the poles, where cos v < 0, the parametrisation is turned over.
+            Surface::Sphere { frame, .. } => {
+                // Beyond the poles, where cos v < 0, the parametrisation is turned over. A negative radius turns both
+                // derivatives round, so that it has no effect on the normal.
                 let turned = if v.abs() > FRAC_PI_2 { v.cos().signum() } else { 1.0 };
-                let outward = frame.radial(u) * v.cos() + frame.z * v.sin();
-                Some(outward * sign(*radius, 1.0) * turned)
+                Some((frame.radial(u) * v.cos() + frame.z * v.sin()) * turned)
             }
             Surface::Torus { frame, major, minor } => {
                 let outward = frame.radial(u) * v.cos() + frame.z * v.sin();
-                Some(outward * sign(*minor, 1.0) * sign(major + minor * v.cos(), 1.0))
+                // On the axis the sum is nothing but rounding.
+                let rho = major + minor * v.cos();
+                let rho = if rho.abs() <= ROUNDED * minor.abs() { 0.0 } else { rho };
+                Some(outward * sign(*minor, 1.0) * sign(rho, 1.0))
             }
             Surface::Offset { basis, .. } => basis.normal(p_uv),
             Surface::Extrusion { .. } | Surface::Revolution { .. } | Surface::Nurbs(_) => {
@@ -205,14 +214,17 @@ impl Surface {
     }
 
     /// The parameters the surface is defined for: infinite where unbounded, `0..=2π` for angles, `±π/2` for a
-    /// sphere's latitude. A cone reaches over both nappes.
+    /// sphere's latitude, from pole to pole for that of a torus that meets its axis. A cone reaches over both nappes.
     pub fn domain(&self) -> UvBox {
         let angle = Range::new(0.0, TAU);
         match self {
             Surface::Plane { .. } => UvBox::from_ranges(Range::ALL, Range::ALL),
             Surface::Cylinder { .. } | Surface::Cone { .. } => UvBox::from_ranges(angle, Range::ALL),
             Surface::Sphere { .. } => UvBox::from_ranges(angle, Range::new(-FRAC_PI_2, FRAC_PI_2)),
-            Surface::Torus { .. } => UvBox::from_ranges(angle, angle),
+            Surface::Torus { .. } => {
+                let v = self.spindle_latitude().map_or(angle, |pole| Range::new(-pole, pole));
+                UvBox::from_ranges(angle, v)
+            }
             Surface::Extrusion { profile, .. } => UvBox::from_ranges(profile.domain(), Range::ALL),
             Surface::Revolution { profile, .. } => UvBox::from_ranges(angle, profile.domain()),
             Surface::Nurbs(nurbs) => nurbs.domain(),
@@ -226,6 +238,7 @@ impl Surface {
         match self {
             Surface::Plane { .. } => [None, None],
             Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Sphere { .. } => [Some(TAU), None],
+            Surface::Torus { .. } if self.spindle_latitude().is_some() => [Some(TAU), None],
             Surface::Torus { .. } => [Some(TAU), Some(TAU)],
             Surface::Extrusion { profile, .. } => [profile.period(), None],
             Surface::Revolution { profile, .. } => [Some(TAU), profile.period()],

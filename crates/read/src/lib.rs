@@ -7,12 +7,15 @@ mod brep_text;
 mod build;
 mod error;
 mod flat;
+mod flat_caps;
+mod folds;
 mod iges;
 mod inventor;
 mod json;
 mod obj;
 mod rhino;
 mod scene;
+mod settle_surfaces;
 mod step;
 mod trimmed;
 mod x3d;
@@ -60,7 +63,12 @@ pub fn read_bytes_with(bytes: &[u8], name: &str, options: &ReadOptions) -> Resul
     }
     let known = FORMATS.iter().find(|format| (format.looks_like)(bytes));
     let format = known.ok_or_else(|| ReadError::UnknownFormat { name: name.to_owned() })?;
-    (format.read)(bytes, name, options)
+    let mut model = (format.read)(bytes, name, options)?;
+    settle_surfaces::make_sizes_positive(&mut model);
+    settle_surfaces::leave_out_still_spans(&mut model);
+    flat_caps::make_planes_of_caps(&mut model);
+    folds::close_folds(&mut model);
+    Ok(model)
 }
 
 /// What a file leaves open.

@@ -4,7 +4,7 @@ use crate::chart::FaceContext;
 use crate::clock::Deadline;
 use crate::crossings::{coarse_chords, shut_corners};
 use crate::effort::{Effort, Remedy, Setback};
-use crate::face_mesh::{FaceMesh, boundary_triangles, shape};
+use crate::face_mesh::{FaceMesh, boundary_triangles, shape, sweep_axis};
 use crate::face_result::{FaceResult, Proof};
 use crate::fill_loop::fill_and_prove;
 use crate::limits::Limits;
@@ -50,11 +50,16 @@ fn attempt(
     let edges_are_final = effort.has(Remedy::CrossingLoops);
     // 1. Unroll the face into one chart.
     let chart = Chart::new(context, limits, effort.seam_chord(), !effort.has(Remedy::UncutCreases))?;
+    if chart.loops.is_empty() {
+        // Its loops enclose nothing: the face has no triangles, and its neighbours meet where it lies.
+        return Ok(Box::new(FaceResult { bound: "no area", ..FaceResult::default() }));
+    }
     // 2. Triangulate its loops.
     let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();
     let uv_box = UvBox::from_points(points.iter().copied());
     let shape = shape(context, limits, uv_box);
-    let (triangles, are_loops_crossing) = match boundary_triangles(&points, &chart, shape) {
+    let axis = sweep_axis(context, limits, uv_box, shape);
+    let (triangles, are_loops_crossing) = match boundary_triangles(&points, &chart, axis) {
         Ok(triangles) => (triangles, false),
         Err(culprits) => (crossing_triangles(context, &chart, &points, &culprits, effort)?, true),
     };

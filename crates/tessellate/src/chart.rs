@@ -92,6 +92,11 @@ impl FaceContext<'_, '_> {
         Ok((loops, lone))
     }
 
+    /// True for a face with a loop that is more than a point.
+    pub fn is_trimmed(&self) -> bool {
+        self.face.loops.iter().any(|boundary| !matches!(boundary, Loop::Vertex(_)))
+    }
+
     fn inverted(&self, xyz: &[DVec3], start: Option<DVec2>) -> Vec<DVec2> {
         let mut near = start.map(Near::on_surface);
         let mut uv: Vec<DVec2> = Vec::with_capacity(xyz.len());

@@ -9,7 +9,7 @@ mod pole_corners;
 mod shape;
 mod vertices;
 
-pub(crate) use shape::{Shape, boundary_triangles, shape};
+pub(crate) use shape::{Shape, boundary_triangles, shape, sweep_axis};
 
 use crate::bulk::{Bulk, Foreseen};
 use crate::chart::FaceContext;

@@ -8,10 +8,12 @@
 //!   a───────A────────a'             a────────A─────────a'            └───────────┘
 //! ```
 //!
-//! The two sides of a seam have the same vertices, one period apart in the chart; all points of a pole line are one vertex.
-//! The outer loop is found by area, not by what the file calls it.
+//! The two sides of a seam have the same vertices, one period apart in the chart; all points of a pole line
+//! are one vertex. The outer loop is found by area, not by what the file calls it.
 
 mod crease;
+mod cuts;
+mod cycle;
 mod winding;
 
 use crate::chart::{FaceContext, OpenLoop};
@@ -21,6 +23,7 @@ use crate::metric::Sizing;
 use crate::snap::{Grid, settled};
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
+use cuts::{Side, hold_beside};
 use winding::seam_beside;
 
 /// The face as polygons: outer loops counter-clockwise, holes clockwise.
@@ -31,8 +34,8 @@ pub struct Chart {
     pub loops: Vec<(u32, u32)>,
     /// Positions of the vertices with `Key::Private`.
     pub private: Vec<DVec3>,
-    /// The outer loop ran the other way in the file: it or the sense flag is wrong, or the loop folds over itself. Triangles
-    /// follow the loop until the neighbours are known.
+    /// The outer loop ran the other way in the file: it or the sense flag is wrong, or the loop folds over
+    /// itself. Triangles follow the loop until the neighbours are known.
     pub reversed: bool,
     /// Where points inside belong.
     pub grid: Grid,
@@ -42,7 +45,8 @@ pub struct Chart {
 const SEAM_DEPTH: usize = 12;
 
 impl Chart {
-    /// Unrolls the face; seams get chords of this length in the metric. `creased`: cut along its surface's creases.
+    /// Unrolls the face; seams get chords of this length in the metric. `creased`: cut along its surface's
+    /// creases.
     ///
     /// # Errors
     /// Where the loops bound no region.
@@ -55,12 +59,15 @@ impl Chart {
         let (loops, lone) = context.loops()?;
         let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new(), reversed: false };
         let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
-        // Two points enclose nothing.
-        plain.retain(|l| l.points.len() > 2);
+        plain.retain(|l| encloses_area(l, context.surface.periods));
+        // Loops that enclose nothing bound nothing: least of all the whole surface.
+        if winding.is_empty() && plain.is_empty() && context.is_trimmed() {
+            return Ok(Self::default());
+        }
         let outer = if !winding.is_empty() {
-            Some(unroll.cut(winding, &plain)?)
+            Some(unroll.cut(winding, &mut plain)?)
         } else if unroll.needs_natural_boundary(&plain) {
-            Some(unroll.natural_boundary(&plain)?)
+            Some(unroll.natural_boundary(&mut plain)?)
         } else {
             None
         };
@@ -127,8 +134,8 @@ impl Unroll<'_, '_> {
         Key::Private(self.private.len() as u32 - 1)
     }
 
-    /// Points strictly between two chart points, as many as the metric asks for, and more where a chord strays further from
-    /// the surface than its curvature at a few places promised.
+    /// Points strictly between two chart points, as many as the metric asks for, and more where a chord
+    /// strays further from the surface than its curvature at a few places promised.
     pub fn between(&self, from: DVec2, to: DVec2) -> Vec<DVec2> {
         // Free surfaces may bend many times along a seam.
         let probes = if self.context.surface.is_elementary() { 16 } else { 96 };
@@ -212,7 +219,8 @@ impl Unroll<'_, '_> {
         fine
     }
 
-    /// As many as chords fit round the surface half way to the middle of its domain, or of the face where that is unbounded.
+    /// As many as chords fit round the surface half way to the middle of its domain, or of the face where
+    /// that is unbounded.
     fn pole_points(&self, from: DVec2, to: DVec2, inside: DVec2) -> usize {
         let along = usize::from((to - from).x == 0.0);
         let across = 1 - along;
@@ -225,7 +233,8 @@ impl Unroll<'_, '_> {
         (rate / self.seam_chord).ceil().clamp(2.0, 256.0) as usize
     }
 
-    /// True for a surface without any boundary of its own whose loops are all holes, and for a face without loops.
+    /// True for a surface without any boundary of its own whose loops are all holes, and for a face without
+    /// loops.
     fn needs_natural_boundary(&self, plain: &[OpenLoop]) -> bool {
         let Some(largest) =
             plain.iter().max_by(|a, b| area(&a.points).abs().total_cmp(&area(&b.points).abs()))
@@ -240,16 +249,37 @@ impl Unroll<'_, '_> {
     }
 
     /// The whole domain of the surface.
-    fn natural_boundary(&mut self, holes: &[OpenLoop]) -> Result<Vec<ChartPoint>, MeshIssue> {
+    fn natural_boundary(&mut self, holes: &mut Vec<OpenLoop>) -> Result<Vec<ChartPoint>, MeshIssue> {
         let domain = self.context.surface.domain();
         if !domain.is_finite() {
             return Err(MeshIssue::UnboundedSurface);
         }
         let UvBox { mut min, mut max } = domain;
+        let mut is_free = [true; 2];
         for axis in 0..2 {
             if let Some(period) = self.context.surface.periods[axis] {
-                min[axis] = seam_beside(holes, axis, period, min[axis]);
-                max[axis] = min[axis] + period;
+                let (place, distance) = seam_beside(holes, axis, period, min[axis]);
+                min[axis] = place;
+                max[axis] = place + period;
+                is_free[axis] = distance > 0.0;
+            }
+        }
+        match is_free {
+            [true, true] => {}
+            [false, true] => {
+                if let Some(polygon) = self.cut_through_holes(0, UvBox { min, max }, holes) {
+                    return Ok(polygon);
+                }
+            }
+            [false, false] => {
+                if let Some(polygon) = self.cut_twice(holes) {
+                    return Ok(polygon);
+                }
+            }
+            [true, false] => {
+                if let Some(polygon) = self.cut_through_holes(1, UvBox { min, max }, holes) {
+                    return Ok(polygon);
+                }
             }
         }
         let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
@@ -287,6 +317,48 @@ impl Unroll<'_, '_> {
             polygon.extend(inner[k].iter().map(|&(key, uv)| ChartPoint { uv, key, segment }));
         }
         Ok(polygon)
+    }
+
+    /// The whole surface, where no straight cut across the closed direction `axis` keeps clear of its holes:
+    /// a cut through them, from pole to pole or from one side of a straight cut along that direction to the
+    /// other. `None` on surfaces that end otherwise.
+    fn cut_through_holes(
+        &mut self,
+        axis: usize,
+        domain: UvBox,
+        holes: &mut Vec<OpenLoop>,
+    ) -> Option<Vec<ChartPoint>> {
+        let across = 1 - axis;
+        let turn = along_axis(axis, domain.size()[axis]);
+        let (low, high) = (domain.min[across], domain.max[across]);
+        let surface = self.context.surface;
+        if let Some(period) = surface.periods[across] {
+            // The straight cut is a loop on both of its sides.
+            let from = domain.min;
+            let mut points = vec![ChartPoint { uv: from, key: self.pole_key(from), segment: Segment::Seam }];
+            for uv in self.between(from, from + turn) {
+                points.push(ChartPoint { uv, key: self.add_private(uv), segment: Segment::Seam });
+            }
+            let mut winding = [0, 0];
+            winding[axis] = 1;
+            let mut a = OpenLoop { points, winding, outer: true };
+            let step = along_axis(across, period);
+            hold_beside(holes, &a, step, |p| p[across] / period);
+            let points = shifted(&a.points, step);
+            let mut b = OpenLoop { points, ..a.clone() };
+            let first = if axis == 0 { &mut b } else { &mut a };
+            first.reverse();
+            let turn = if axis == 0 { turn } else { -turn };
+            return Some(self.between_sides([Side::Loop(&a), Side::Loop(&b)], axis, turn, holes));
+        }
+        let is_pole = |value: f64| {
+            let tiny = 1e-9 * (high - low);
+            surface.poles.iter().any(|p| p.axis == across && (p.value - value).abs() <= tiny)
+        };
+        // Along v the interior is on the other side of what runs upwards.
+        let turn = if axis == 0 { turn } else { -turn };
+        (is_pole(low) && is_pole(high))
+            .then(|| self.between_sides([Side::Pole(low), Side::Pole(high)], axis, turn, holes))
     }
 
     /// One key per corner of the domain; corners that poles or closed directions identify share theirs.
@@ -354,8 +426,9 @@ impl Unroll<'_, '_> {
             inside.push(by.is_some());
             holes.push(open);
         }
-        // What the file runs as a hole is one, even where coarse chords put it across the outer loop: finer ones will not.
-        // What it runs as an outer loop is one outside the outer loop, another piece of the face, and inside a hole: an island.
+        // What the file runs as a hole is one, even where coarse chords put it across the outer loop: finer
+        // ones will not. What it runs as an outer loop is one outside the outer loop, another piece of the
+        // face, and inside a hole: an island.
         let wrong: Vec<bool> = (0..holes.len())
             .map(|i| area(&holes[i].points) > 0.0 && inside[i] && holes_around(&holes, i).is_multiple_of(2))
             .collect();
@@ -368,10 +441,20 @@ impl Unroll<'_, '_> {
     /// The whole periods that bring a loop inside the outer one, if any do.
     fn shift_into(&self, outer: &[ChartPoint], hole: &[ChartPoint]) -> Option<DVec2> {
         let [pu, pv] = self.context.surface.periods;
-        let steps =
-            |period: Option<f64>| if period.is_some() { vec![0.0, 1.0, -1.0, 2.0, -2.0] } else { vec![0.0] };
-        for v in steps(pv) {
-            for u in steps(pu) {
+        let (to, from) =
+            (UvBox::from_points(outer.iter().map(|p| p.uv)), UvBox::from_points(hole.iter().map(|p| p.uv)));
+        let steps = |axis: usize| match self.context.surface.periods[axis] {
+            Some(period) => {
+                // Near turns first; a cut through holes may lead the outer loop some turns away.
+                let far = |d: f64| (d.abs() / period).ceil().clamp(2.0, MOST_TURNS);
+                let most = far(to.min[axis] - from.max[axis]).max(far(to.max[axis] - from.min[axis]));
+                let turns = (1..=most as i32).flat_map(|k| [f64::from(k), f64::from(-k)]);
+                std::iter::once(0.0).chain(turns).collect()
+            }
+            None => vec![0.0],
+        };
+        for v in steps(1) {
+            for u in steps(0) {
                 let by = DVec2::new(u * pu.unwrap_or(0.0), v * pv.unwrap_or(0.0));
                 let inside = hole.iter().filter(|p| contains(outer, p.uv + by)).count();
                 if 2 * inside > hole.len() {
@@ -381,6 +464,33 @@ impl Unroll<'_, '_> {
         }
         None
     }
+}
+
+/// An outer loop that goes round more often than this is not searched for where a hole lies in it.
+const MOST_TURNS: f64 = 64.0;
+
+/// False where a loop runs back over itself, vertex by vertex, until nothing is left: two points, or an edge
+/// and back.
+fn encloses_area(open: &OpenLoop, periods: [Option<f64>; 2]) -> bool {
+    let mut left: Vec<&ChartPoint> = Vec::with_capacity(open.points.len());
+    // The two sides of a seam have the same vertices, a turn apart.
+    let same = |a: &ChartPoint, b: &ChartPoint| {
+        let turned = |k: usize| periods[k].is_some_and(|p| (a.uv[k] - b.uv[k]).abs() > 0.5 * p);
+        a.key == b.key && !turned(0) && !turned(1)
+    };
+    for point in &open.points {
+        match left[..] {
+            [.., before, _] if same(before, point) => {
+                left.pop();
+            }
+            _ => left.push(point),
+        }
+    }
+    let mut ends = 0..left.len();
+    while ends.len() > 2 && same(left[ends.start + 1], left[ends.end - 1]) {
+        ends = ends.start + 1..ends.end - 1;
+    }
+    ends.len() > 2
 }
 
 /// In how many of the other loops a loop lies as a whole.
@@ -394,7 +504,8 @@ fn holes_around(loops: &[OpenLoop], i: usize) -> usize {
     others.filter(around).count()
 }
 
-/// True where a loop uses an edge twice: the face lies on both sides of it, so the loop encloses the face and no hole.
+/// True where a loop uses an edge twice: the face lies on both sides of it, so the loop encloses the face and
+/// no hole.
 fn runs_along_seam(open: &OpenLoop) -> bool {
     let first = |p: &ChartPoint| match p.segment {
         Segment::Edge { edge, chord: 0 } => Some(edge),

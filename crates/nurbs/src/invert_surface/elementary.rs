@@ -59,22 +59,12 @@ fn cone(frame: &Frame, r: f64, slope: f64, p: DVec3, near: Option<DVec2>) -> DVe
     }
 }
 
-/// The tube's circle in the half plane of the point, or where the tube crosses the axis in the opposite one.
+/// The tube's circle in the half plane of the point; where the tube crosses the axis, held between its poles.
 fn torus(frame: &Frame, major: f64, minor: f64, p: DVec3, near: Option<DVec2>) -> DVec2 {
     let at = polar(frame, p, major.abs() + minor.abs(), near);
-    let candidate = |rho: f64, turn: f64| {
-        let (x, z) = (rho - major, at.height);
-        let on_circle = x.hypot(z) <= ON_AXIS * (major.abs() + minor.abs());
-        let v = if on_circle { near.map_or(0.0, |n| n.y) } else { z.atan2(x) };
-        (DVec2::new(at.angle + turn, v), (x.hypot(z) - minor).abs())
-    };
-    let (here, near_gap) = candidate(at.radius, 0.0);
-    if major >= minor {
-        return here;
-    }
-    let (there, far_gap) = candidate(-at.radius, std::f64::consts::PI);
-    let tie = (near_gap - far_gap).abs() <= TIE * (major.abs() + minor.abs());
-    let opposite =
-        if tie { near.is_some_and(|n| major + minor * n.y.cos() < 0.0) } else { far_gap < near_gap };
-    if opposite { there } else { here }
+    let (x, z) = (at.radius - major, at.height);
+    let on_circle = x.hypot(z) <= ON_AXIS * (major.abs() + minor.abs());
+    let v = if on_circle { near.map_or(0.0, |n| n.y) } else { z.atan2(x) };
+    let surface = Surface::Torus { frame: *frame, major, minor };
+    DVec2::new(at.angle, surface.spindle_latitude().map_or(v, |pole| v.clamp(-pole, pole)))
 }

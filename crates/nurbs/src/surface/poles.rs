@@ -4,7 +4,7 @@
 use crate::curve::CLOSED;
 use crate::{Curve, NurbsSurface, Range, Surface, UvBox};
 use glam::{DVec2, DVec3};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A line of parameter space that is one point in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,12 +52,20 @@ impl Surface {
                 };
                 vec![pole(-1.0), pole(1.0)]
             }
-            Surface::Torus { major, minor, .. } if major < minor => {
-                let v = (-major / minor).acos();
-                vec![on_v(v), on_v(TAU - v)]
-            }
-            Surface::Torus { major, minor, .. } if major == minor => vec![on_v(PI)],
-            Surface::Torus { .. } => Vec::new(),
+            Surface::Torus { frame, major, minor } => match self.spindle_latitude() {
+                Some(v) => {
+                    // On the axis, whatever the rounding of the latitude.
+                    let height = (minor * minor - major * major).max(0.0).sqrt();
+                    let pole = |side: f64| Pole {
+                        axis: 1,
+                        value: side * v,
+                        point: frame.origin + frame.z * (side * height),
+                    };
+                    vec![pole(-1.0), pole(1.0)]
+                }
+                None if major == minor => vec![on_v(PI)],
+                None => Vec::new(),
+            },
             Surface::Revolution { profile, axis_origin, axis } => {
                 let axis = axis.normalize_or(DVec3::Z);
                 axis_touches(profile, *axis_origin, axis, tolerance)

@@ -46,7 +46,8 @@ fn poles_are_points_with_normals() {
     let f = zoo::frame();
     let sphere = Surface::Sphere { frame: f, radius: 3.0 };
     let cone = Surface::Cone { frame: f, radius: 2.0, half_angle: 0.4 };
-    let lemon = Surface::Torus { frame: f, major: 1.0, minor: 2.0 };
+    let apple = Surface::Torus { frame: f, major: 1.0, minor: 2.0 };
+    let lemon = Surface::Torus { frame: f, major: -1.0, minor: 2.0 };
     let horn = Surface::Torus { frame: f, major: 2.0, minor: 2.0 };
     let half = Curve::Circle { frame: Frame { origin: f.origin, x: f.x, y: f.z, z: -f.y }, radius: 3.0 };
     let ball = Surface::Revolution { profile: half, axis_origin: f.origin, axis: f.z };
@@ -60,7 +61,8 @@ fn poles_are_points_with_normals() {
     for (surface, values) in [
         (&sphere, vec![-FRAC_PI_2, FRAC_PI_2]),
         (&cone, vec![-2.0 / 0.4f64.tan()]),
-        (&lemon, vec![PI - PI / 3.0, PI + PI / 3.0]),
+        (&apple, vec![-PI + PI / 3.0, PI - PI / 3.0]),
+        (&lemon, vec![-PI / 3.0, PI / 3.0]),
         (&horn, vec![PI]),
         (&ball, vec![FRAC_PI_2, 1.5 * PI]),
         (&funnel, vec![-4.0]),

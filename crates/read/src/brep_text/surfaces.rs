@@ -3,7 +3,7 @@
 //! The file's cone has its v along the slant, ours along the axis. The file's placements may be left-handed, ours are
 //! not: there the axis, and with it v, is turned round.
 
-use super::curves::{MAX_DEPTH, Parsed, bezier_knots, curve, finite, knot_vector, knots, point, poles, size};
+use super::curves::{MAX_DEPTH, Parsed, bezier_knots, curve, finite, knot_vector, knots, point, poles};
 use super::tokens::{Stop, Tokens};
 use chordal_nurbs::{DVec2, DVec3, Frame, NurbsSurface, Range, Surface, UvBox};
 
@@ -54,7 +54,7 @@ pub(crate) fn surface(tokens: &mut Tokens<'_>, depth: u32) -> Parsed<Patch> {
         1 => Ok(placed(tokens)?.map(|p| Patch::plain(Surface::Plane { frame: p.frame }))),
         2 => {
             let (place, radius) = (placed(tokens)?, tokens.real()?);
-            let radius = size(radius);
+            let radius = radius_of(radius);
             Ok(place.and_then(|p| {
                 let radius = radius?;
                 Ok(p.patch(1.0, |frame, _| Surface::Cylinder { frame, radius }))
@@ -67,14 +67,14 @@ pub(crate) fn surface(tokens: &mut Tokens<'_>, depth: u32) -> Parsed<Patch> {
         4 => {
             let (place, radius) = (placed(tokens)?, tokens.real()?);
             Ok(place.and_then(|p| {
-                let radius = size(radius)?;
+                let radius = radius_of(radius)?;
                 Ok(p.patch(1.0, |frame, _| Surface::Sphere { frame, radius }))
             }))
         }
         5 => {
             let (place, major, minor) = (placed(tokens)?, tokens.real()?, tokens.real()?);
             Ok(place.and_then(|p| {
-                let (major, minor) = (if major == 0.0 { 0.0 } else { size(major)? }, size(minor)?);
+                let minor = radius_of(minor)?;
                 Ok(p.patch(1.0, |frame, _| Surface::Torus { frame, major, minor }))
             }))
         }
@@ -109,15 +109,18 @@ pub(crate) fn surface(tokens: &mut Tokens<'_>, depth: u32) -> Parsed<Patch> {
     }
 }
 
+/// A radius of a surface. Negative ones keep their sign, see [`crate::settle_surfaces`].
+fn radius_of(value: f64) -> Result<f64, String> {
+    if value.is_finite() && value != 0.0 { Ok(value) } else { Err(format!("a radius is {value}")) }
+}
+
 fn cone(place: Placed, radius: f64, angle: f64) -> Result<Patch, String> {
-    let radius = if radius == 0.0 { 0.0 } else { size(radius)? };
     let (sine, cosine) = angle.sin_cos();
-    // Within 1e-4 of a plane or a cylinder a cone is none.
-    if !angle.is_finite() || cosine < 1e-4 {
-        return Err(format!("the half angle of a cone is {angle}"));
+    if !angle.is_finite() || !radius.is_finite() {
+        return Err(format!("a cone has the radius {radius} and the half angle {angle}"));
     }
     if sine == 0.0 {
-        let radius = size(radius)?;
+        let radius = radius_of(radius)?;
         return Ok(place.patch(1.0, |frame, _| Surface::Cylinder { frame, radius }));
     }
     Ok(place.patch(cosine, |frame, side| Surface::Cone { frame, radius, half_angle: angle * side }))

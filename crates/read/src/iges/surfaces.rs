@@ -4,7 +4,7 @@ use super::curves::{Segment, joined, segments};
 use super::document::{Args, Doc, Ix, Res};
 use super::{matrix, ruled, splines};
 use chordal_nurbs::{DAffine3, DVec2, DVec3, Frame, Range, Surface, UvBox};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// Surfaces that refer to surfaces, deeper than this, refer in a circle.
 const MAX_DEPTH: u32 = 8;
@@ -115,15 +115,17 @@ fn plain(doc: &Doc<'_>, ix: Ix, depth: u32) -> Res<Patch> {
         }
         198 => {
             let (frame, [major, minor]) = axial(doc, ix, args)?;
-            let (major, minor) = (size(doc, ix, major)?, size(doc, ix, minor)?);
+            let minor = size(doc, ix, minor)?;
             Ok(Patch::elementary(Surface::Torus { frame, major, minor }))
         }
         _ => Err(doc.bad(ix, "is not a surface that this reader knows")),
     }
 }
 
+/// A radius. Negative ones keep their sign, see [`crate::settle_surfaces`].
 fn size(doc: &Doc<'_>, ix: Ix, radius: f64) -> Res<f64> {
-    if radius > 0.0 { Ok(radius) } else { Err(doc.bad(ix, format!("a radius is {radius}"))) }
+    let sound = radius.is_finite() && radius != 0.0;
+    if sound { Ok(radius) } else { Err(doc.bad(ix, format!("a radius is {radius}"))) }
 }
 
 /// Type 116, moved by its own transformation.
@@ -174,8 +176,7 @@ fn placed(
 }
 
 fn cone(doc: &Doc<'_>, ix: Ix, frame: Frame, radius: f64, half_angle: f64) -> Res<Patch> {
-    // Within 1e-4 of a plane or a cylinder a cone is none.
-    if !(half_angle.abs() > 1e-10 && half_angle.abs() < FRAC_PI_2 - 1e-4) || radius < 0.0 {
+    if !(radius.is_finite() && half_angle.is_finite()) {
         return Err(
             doc.bad(ix, format!("a cone with radius {radius} and a half angle of {half_angle} radians"))
         );

@@ -39,17 +39,17 @@ impl Geometry<'_> {
             Kw::Plane => Ok(Surface::Plane { frame: self.frame(args.reference()?)? }),
             Kw::CylindricalSurface => {
                 let frame = self.frame(args.reference()?)?;
-                Ok(Surface::Cylinder { frame, radius: self.size(ix, "radius", args.real()?)? })
+                Ok(Surface::Cylinder { frame, radius: self.radius(ix, "radius", args.real()?)? })
             }
             Kw::ConicalSurface => self.cone(ix, args),
             Kw::SphericalSurface => {
                 let frame = self.frame(args.reference()?)?;
-                Ok(Surface::Sphere { frame, radius: self.size(ix, "radius", args.real()?)? })
+                Ok(Surface::Sphere { frame, radius: self.radius(ix, "radius", args.real()?)? })
             }
             Kw::ToroidalSurface | Kw::DegenerateToroidalSurface => {
                 let frame = self.frame(args.reference()?)?;
-                let major = args.real()?.abs();
-                Ok(Surface::Torus { frame, major, minor: self.size(ix, "minor radius", args.real()?)? })
+                let major = args.real()?;
+                Ok(Surface::Torus { frame, major, minor: self.radius(ix, "minor radius", args.real()?)? })
             }
             Kw::SurfaceOfLinearExtrusion => {
                 let profile = self.curve(args.reference()?)?;
@@ -73,21 +73,19 @@ impl Geometry<'_> {
         }
     }
 
+    /// A radius of a surface. Negative ones keep their sign, see [`crate::settle_surfaces`]; zero is refused.
+    fn radius(&self, ix: Ix, what: &str, value: f64) -> Res<f64> {
+        if value == 0.0 { Err(self.doc.bad(ix, format!("the {what} is zero"))) } else { Ok(value) }
+    }
+
     /// CONICAL_SURFACE(name, position, radius, semi_angle). A negative angle opens the other way.
     fn cone(&mut self, ix: Ix, mut args: Args<'_>) -> Res<Surface> {
         let frame = self.frame(args.reference()?)?;
         let radius = args.real()?;
         let half_angle = args.real()? * self.units.angle_rad;
-        if radius < 0.0 {
-            return Err(self.doc.bad(ix, format!("the radius is negative ({radius})")));
-        }
-        // Within 1e-4 of a plane a cone is none.
-        if half_angle.abs() > std::f64::consts::FRAC_PI_2 - 1e-4 {
-            return Err(self.doc.bad(ix, format!("the half angle is {half_angle} radians")));
-        }
         if half_angle == 0.0 {
             self.doc.warn(ix, "the half angle is zero; read as a cylinder");
-            return Ok(Surface::Cylinder { frame, radius: self.size(ix, "radius", radius)? });
+            return Ok(Surface::Cylinder { frame, radius: self.radius(ix, "radius", radius)? });
         }
         Ok(Surface::Cone { frame, radius, half_angle })
     }

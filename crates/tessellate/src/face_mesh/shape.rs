@@ -33,11 +33,23 @@ pub(crate) fn shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBo
     }
 }
 
-/// A free surface is singly curved where its metric across one parameter stays far below one chord everywhere.
+/// A free surface is singly curved where its metric across one parameter stays far below one chord
+/// everywhere.
 fn sampled_shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) -> Shape {
+    let extent = chords_across(context, limits, uv_box);
+    let small = 0.05;
+    match (extent[0] < small, extent[1] < small) {
+        (true, true) => Shape::Flat,
+        (false, true) => Shape::Singly { axis: 0 },
+        (true, false) => Shape::Singly { axis: 1 },
+        _ => Shape::Doubly,
+    }
+}
+
+/// About how many chords a face takes along u and along v.
+fn chords_across(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) -> [f64; 2] {
     const N: usize = 6;
     let mut extent = [0.0f64; 2];
-    let mut twist = 0.0f64;
     for i in 0..N {
         let mut sum = [0.0; 2];
         for j in 0..N {
@@ -49,29 +61,45 @@ fn sampled_shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) 
                 let mut d = DVec2::ZERO;
                 d[axis] = uv_box.size()[axis] / N as f64;
                 sum[axis] += s.metric.length(d);
-                let size = uv_box.size();
-                twist = twist.max(s.metric.uv.abs() * size.x * size.y / (N * N) as f64);
             }
         }
         for axis in 0..2 {
             extent[axis] = extent[axis].max(sum[axis]);
         }
     }
-    let small = 0.05;
-    match (extent[0] < small, extent[1] < small) {
-        (true, true) => Shape::Flat,
-        (false, true) => Shape::Singly { axis: 0 },
-        (true, false) => Shape::Singly { axis: 1 },
-        _ => Shape::Doubly,
+    extent
+}
+
+/// A face that takes so many times as many chords along v as along u is swept along v.
+const LONG: f64 = 32.0;
+
+/// The parameter along which the boundary is swept into triangles: that in which the face is curved, or much
+/// longer.
+///
+/// Swept across, a long helical strip would begin with triangles over all its turns, which no flips undo in a
+/// reasonable time.
+pub(crate) fn sweep_axis(
+    context: &FaceContext<'_, '_>,
+    limits: &Limits,
+    uv_box: UvBox,
+    shape: Shape,
+) -> usize {
+    match shape {
+        Shape::Singly { axis } => axis,
+        Shape::Doubly if !context.surface.is_elementary() => {
+            let [u, v] = chords_across(context, limits, uv_box);
+            usize::from(v > LONG * u.max(1.0))
+        }
+        _ => 0,
     }
 }
 
 pub(crate) fn boundary_triangles(
     points: &[DVec2],
     chart: &Chart,
-    shape: Shape,
+    axis: usize,
 ) -> Result<Vec<[u32; 3]>, Vec<u32>> {
-    let result = if shape == (Shape::Singly { axis: 1 }) {
+    let result = if axis == 1 {
         // A quarter turn keeps the orientation and makes v the direction of the sweep.
         let turned: Vec<DVec2> = points.iter().map(|p| DVec2::new(p.y, -p.x)).collect();
         sweep(&turned, &chart.loops)

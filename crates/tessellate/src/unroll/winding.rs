@@ -1,17 +1,24 @@
-//! Polygons from loops that wind round a closed surface: cut open along a seam, in pairs, or closed by a pole.
+//! Polygons from loops that wind round a closed surface: cut open along a seam, in pairs, or closed by a
+//! pole.
+//!
+//! Holes that the cut leads through become sides of the polygon and are taken out of the list of holes.
 
+use super::cuts::{Cuts, Hop, Side, Stop, hold_beside, whole_turns};
 use super::{Unroll, along_axis, mean, shifted};
 use crate::chart::OpenLoop;
 use crate::keys::{ChartPoint, Key, Segment};
 use chordal_brep::MeshIssue;
 use chordal_nurbs::DVec2;
 
+/// So many of the shortest straight cuts are tried before the cut is led through holes.
+const STRAIGHT_CUTS: usize = 2000;
+
 impl Unroll<'_, '_> {
     /// The polygon of one or two loops that wind round the surface.
     pub(super) fn cut(
         &mut self,
         mut winding: Vec<OpenLoop>,
-        holes: &[OpenLoop],
+        holes: &mut Vec<OpenLoop>,
     ) -> Result<Vec<ChartPoint>, MeshIssue> {
         let axis = usize::from(winding[0].winding[0] == 0);
         let across = 1 - axis;
@@ -37,11 +44,22 @@ impl Unroll<'_, '_> {
                         self.pole_beyond(across, value, is_lower(&a)).ok_or(MeshIssue::UnboundedFace)?
                     }
                 };
-                Ok(self.cap(&a, axis, period, value))
+                let turn = along_axis(axis, period * f64::from(a.winding[axis]));
+                if let Some(period) = self.context.surface.periods[across] {
+                    let step =
+                        along_axis(across, if value > mean(&a.points, across) { period } else { -period });
+                    hold_beside(holes, &a, step, |p| p[across] / step[across]);
+                }
+                Ok(self.between_sides([Side::Loop(&a), Side::Pole(value)], axis, turn, holes))
             }
             2 => {
                 let (a, b) = self.pair(winding, axis);
-                Ok(self.band(&a, &b, along_axis(axis, period * f64::from(a.winding[axis])), holes))
+                if let Some(period) = self.context.surface.periods[across] {
+                    let step = along_axis(across, period);
+                    hold_beside(holes, &a, step, |p| p[across] / period);
+                }
+                let turn = along_axis(axis, period * f64::from(a.winding[axis]));
+                Ok(self.between_sides([Side::Loop(&a), Side::Loop(&b)], axis, turn, holes))
             }
             loops => Err(MeshIssue::ManyEncirclingLoops { loops }),
         }
@@ -61,12 +79,12 @@ impl Unroll<'_, '_> {
 
     /// The polygon of two loops that wind round a torus both ways at once.
     ///
-    /// With w the whole turns of the first, p ↦ w × p (in turns) tells how far across a place lies: the other loop is moved by
-    /// whole turns to the first place on the left.
+    /// With w the whole turns of the first, p ↦ w × p (in turns) tells how far across a place lies: the other
+    /// loop is moved by whole turns to the first place on the left.
     fn slanted_band(
         &mut self,
         mut winding: Vec<OpenLoop>,
-        holes: &[OpenLoop],
+        holes: &mut Vec<OpenLoop>,
     ) -> Result<Vec<ChartPoint>, MeshIssue> {
         let mut b = winding.remove(1);
         let a = winding.remove(0);
@@ -87,13 +105,13 @@ impl Unroll<'_, '_> {
             return Err(MeshIssue::EncirclingLoopsDiffer);
         };
         let turns = |(m, n): (i32, i32)| DVec2::new(f64::from(m), f64::from(n));
-        let across = |l: &OpenLoop| {
-            let p = DVec2::new(mean(&l.points, 0), mean(&l.points, 1)) / periods;
-            turns((i, j)).perp_dot(p)
-        };
-        let by = -(across(&b) - across(&a)).floor();
-        b.points = shifted(&b.points, turns((m, n)) * by * periods);
-        Ok(self.band(&a, &b, turns((i, j)) * periods, holes))
+        let across = |p: DVec2| turns((i, j)).perp_dot(p / periods);
+        let of_loop = |l: &OpenLoop| across(DVec2::new(mean(&l.points, 0), mean(&l.points, 1)));
+        let by = -(of_loop(&b) - of_loop(&a)).floor();
+        let step = turns((m, n)) * periods;
+        b.points = shifted(&b.points, step * by);
+        hold_beside(holes, &a, step, across);
+        Ok(self.between_sides([Side::Loop(&a), Side::Loop(&b)], 0, turns((i, j)) * periods, holes))
     }
 
     /// The lower loop, and the upper one moved above it.
@@ -136,7 +154,7 @@ impl Unroll<'_, '_> {
     }
 
     /// A seam from the end of `polygon` to the chart point `to`, and the keys and places of its inner points.
-    fn seam(&mut self, polygon: &mut Vec<ChartPoint>, to: DVec2) -> Vec<(Key, DVec2)> {
+    pub(super) fn seam(&mut self, polygon: &mut Vec<ChartPoint>, to: DVec2) -> Vec<(Key, DVec2)> {
         let Some(last) = polygon.last_mut() else { return Vec::new() };
         last.segment = Segment::Seam;
         let from = last.uv;
@@ -147,7 +165,7 @@ impl Unroll<'_, '_> {
     }
 
     /// The same seam back, seen from its other side.
-    fn seam_back(polygon: &mut Vec<ChartPoint>, inner: &[(Key, DVec2)], by: DVec2) {
+    pub(super) fn seam_back(polygon: &mut Vec<ChartPoint>, inner: &[(Key, DVec2)], by: DVec2) {
         if let Some(last) = polygon.last_mut() {
             last.segment = Segment::Seam;
         }
@@ -158,114 +176,209 @@ impl Unroll<'_, '_> {
         }));
     }
 
-    /// The region between a loop and the pole line at `value`.
-    fn cap(&mut self, a: &OpenLoop, axis: usize, period: f64, value: f64) -> Vec<ChartPoint> {
-        let across = 1 - axis;
-        let by = along_axis(axis, -period * f64::from(a.winding[axis]));
-        let mut polygon = Self::once_round(a, 0, -by);
-        let mut corner = polygon[polygon.len() - 1].uv;
-        corner[across] = value;
-        let inner = self.seam(&mut polygon, corner);
-        let key = self.pole_key(corner);
-        polygon.push(ChartPoint { uv: corner, key, segment: Segment::Pole });
-        polygon.push(ChartPoint { uv: corner + by, key, segment: Segment::Seam });
-        Self::seam_back(&mut polygon, &inner, by);
-        polygon
-    }
-
-    /// The region between two loops, the first of which ends one `turn` beyond its start.
-    fn band(&mut self, a: &OpenLoop, b: &OpenLoop, turn: DVec2, holes: &[OpenLoop]) -> Vec<ChartPoint> {
-        let (i, j, turns) = self.bridge(a, b, turn, holes);
-        let mut polygon = Self::once_round(a, i, turn);
-        // The upper loop begins where the lower one ended, one period on, and runs back.
-        let moved =
-            OpenLoop { points: shifted(&b.points, turn * (turns + 1.0)), winding: b.winding, outer: false };
-        let back = Self::once_round(&moved, j, -turn);
-        let inner = self.seam(&mut polygon, back[0].uv);
-        polygon.extend(back);
-        Self::seam_back(&mut polygon, &inner, -turn);
-        polygon
-    }
-
-    /// Points of the two loops to cut between, and by how many turns the upper one moves: the shortest cut that crosses no loop.
-    fn bridge(&self, a: &OpenLoop, b: &OpenLoop, turn: DVec2, holes: &[OpenLoop]) -> (usize, usize, f64) {
-        let stride = |n: usize| n.div_ceil(400);
-        let (du, dv) = {
-            let (_, du, dv) = self.context.surface.surface.jet1(a.points[0].uv);
-            (du.length(), dv.length())
+    /// The polygon of the face between two sides, the first of which ends one `turn` beyond its start.
+    pub(super) fn between_sides(
+        &mut self,
+        sides: [Side<'_>; 2],
+        axis: usize,
+        turn: DVec2,
+        holes: &mut Vec<OpenLoop>,
+    ) -> Vec<ChartPoint> {
+        let place = match (sides, holes.first()) {
+            ([Side::Loop(open), _], _) | ([Side::Pole(_), Side::Loop(open)], _) | (_, Some(open)) => {
+                open.points[0].uv
+            }
+            _ => DVec2::ZERO,
         };
-        let mut candidates = Vec::new();
-        for i in (0..a.points.len()).step_by(stride(a.points.len())) {
-            for j in (0..b.points.len()).step_by(stride(b.points.len())) {
-                let d = b.points[j].uv - a.points[i].uv;
-                let turns = -whole_turns(d, turn);
-                let d = d + turn * turns;
-                candidates.push(((d.x * du).powi(2) + (d.y * dv).powi(2), i, j, turns));
+        let lengths = self.lengths_at(place);
+        let cuts = Cuts::new(sides, holes, axis, turn, lengths, self.context.surface.periods);
+        let straight = self.straight_cut(&cuts, sides, axis, turn, lengths, holes.len());
+        let hops = match straight {
+            Ok(hop) => vec![hop],
+            // Where nothing is free the loops cross each other: finer chords are asked for later on.
+            Err(shortest) => cuts.chain().unwrap_or_else(|| vec![shortest]),
+        };
+        drop(cuts);
+        let polygon = self.cut_open(sides, &hops, turn, holes);
+        let mut passed: Vec<usize> = hops[1..].iter().map(|hop| hop.from.node - 1).collect();
+        passed.sort_unstable();
+        for &hole in passed.iter().rev() {
+            holes.remove(hole);
+        }
+        polygon
+    }
+
+    /// Lengths in space of steps in u and v at a place.
+    pub(super) fn lengths_at(&self, p_uv: DVec2) -> DVec2 {
+        let (_, du, dv) = self.context.surface.surface.jet1(self.context.surface.wrapped(p_uv));
+        DVec2::new(du.length(), dv.length())
+    }
+
+    /// The straight cut that crosses no loop: from the start of a loop to a pole, or the shortest between two
+    /// loops. `Err`: the one that would be taken if nothing were in the way.
+    fn straight_cut(
+        &self,
+        cuts: &Cuts<'_>,
+        sides: [Side<'_>; 2],
+        axis: usize,
+        turn: DVec2,
+        lengths: DVec2,
+        holes: usize,
+    ) -> Result<Hop, Hop> {
+        let stop = |node: usize, index: usize, uv: DVec2| Stop { node, index, uv };
+        let checked = |hop: Hop| if cuts.is_free(hop.from.uv, hop.to.uv) { Ok(hop) } else { Err(hop) };
+        match sides {
+            [Side::Loop(a), Side::Loop(b)] => {
+                let between = |&(_, i, j, turns): &(f64, usize, usize, f64)| Hop {
+                    from: stop(0, i, a.points[i].uv),
+                    to: stop(holes + 1, j, b.points[j].uv + turn * turns),
+                };
+                let candidates = straight_cuts(a, b, turn, lengths);
+                let free =
+                    candidates.iter().take(STRAIGHT_CUTS).map(between).find_map(|hop| checked(hop).ok());
+                free.ok_or_else(|| between(&candidates[0]))
+            }
+            [Side::Loop(a), Side::Pole(value)] => {
+                let from = a.points[0].uv;
+                let mut to = from;
+                to[1 - axis] = value;
+                checked(Hop { from: stop(0, 0, from), to: stop(holes + 1, 0, to) })
+            }
+            [Side::Pole(value), other] => {
+                let mut from = match other {
+                    Side::Loop(b) => b.points[0].uv,
+                    Side::Pole(_) => self.context.surface.domain().min,
+                };
+                let mut to = from;
+                from[1 - axis] = value;
+                if let Side::Pole(end) = other {
+                    to[1 - axis] = end;
+                }
+                checked(Hop { from: stop(0, 0, from), to: stop(holes + 1, 0, to) })
             }
         }
-        candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
-        // Of cuts that only rounding tells apart, the one between the first samples.
-        let scale = candidates[0].0;
-        candidates
-            .chunk_by_mut(|x, y| y.0 - x.0 <= 1e-9 * (scale + x.0))
-            .for_each(|equal| equal.sort_by_key(|c| (a.points[c.1].key, b.points[c.2].key)));
-        let crosses = |&&(_, i, j, turns): &&(f64, usize, usize, f64)| {
-            let (p, q) = (a.points[i].uv, b.points[j].uv + turn * turns);
-            !holes.iter().chain([a, b]).any(|hole| self.crosses_loop(p, q, hole, turn))
-        };
-        let best = candidates.iter().take(2000).find(crosses).unwrap_or(&candidates[0]);
-        (best.1, best.2, best.3)
     }
 
-    /// True where the segment p–q crosses the loop in any turn.
-    fn crosses_loop(&self, p: DVec2, q: DVec2, hole: &OpenLoop, turn: DVec2) -> bool {
-        let n = hole.points.len();
-        let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a) > 0.0;
-        let tiny = 1e-12 * turn.length();
-        let near = |x: DVec2, y: DVec2| x.abs_diff_eq(y, tiny);
-        let winding = |axis: usize| {
-            self.context.surface.periods[axis].map_or(0.0, |p| p * f64::from(hole.winding[axis]))
+    /// The polygon along the first side, up the cut, back along the second side and down the cut.
+    fn cut_open(
+        &mut self,
+        sides: [Side<'_>; 2],
+        hops: &[Hop],
+        turn: DVec2,
+        holes: &[OpenLoop],
+    ) -> Vec<ChartPoint> {
+        let (start, end) = (hops[0].from, hops[hops.len() - 1].to);
+        // The second side begins where the first one ends, one turn on, and runs back.
+        let end = match sides[1] {
+            Side::Loop(b) => {
+                let own = b.points[end.index].uv;
+                Stop { uv: own + turn * (whole_turns(end.uv - own, turn) + 1.0), ..end }
+            }
+            Side::Pole(_) => Stop { uv: end.uv + turn, ..end },
         };
-        let closing = DVec2::new(winding(0), winding(1));
-        [-1.0, 0.0, 1.0].iter().any(|extra| {
-            let base = turn * (whole_turns(p - hole.points[0].uv, turn) + extra);
-            (0..n).any(|i| {
-                let (a, mut b) = (hole.points[i].uv + base, hole.points[(i + 1) % n].uv + base);
-                if i + 1 == n {
-                    b += closing;
-                }
-                let touches = [a, b].iter().any(|&x| near(x, p) || near(x, q));
-                !touches && side(p, q, a) != side(p, q, b) && side(a, b, p) != side(a, b, q)
-            })
-        })
+        let mut polygon = self.once_along(sides[0], start, turn);
+        let mut inner = Vec::with_capacity(hops.len());
+        for (k, hop) in hops.iter().enumerate() {
+            let to = if k + 1 == hops.len() { end.uv } else { hop.to.uv + turn };
+            inner.push(self.seam(&mut polygon, to));
+            if let Some(next) = hops.get(k + 1) {
+                let hole = &holes[hop.to.node - 1];
+                let by = hop.to.uv - hole.points[hop.to.index].uv + turn;
+                polygon.extend(part_of(hole, hop.to.index, next.from.index, by));
+            }
+        }
+        polygon.extend(self.once_along(sides[1], end, -turn));
+        for (k, hop) in hops.iter().enumerate().rev() {
+            Self::seam_back(&mut polygon, &inner[k], -turn);
+            if k > 0 {
+                let hole = &holes[hop.from.node - 1];
+                let entry = hops[k - 1].to;
+                let by = entry.uv - hole.points[entry.index].uv;
+                polygon.extend(part_of(hole, hop.from.index, entry.index, by));
+            }
+        }
+        polygon
+    }
+
+    /// One side of the face from a stop on it to the same place one `turn` on.
+    fn once_along(&mut self, side: Side<'_>, from: Stop, turn: DVec2) -> Vec<ChartPoint> {
+        match side {
+            Side::Loop(open) => {
+                let turns = whole_turns(from.uv - open.points[from.index].uv, turn);
+                let moved = OpenLoop { points: shifted(&open.points, turn * turns), ..OpenLoop::default() };
+                Self::once_round(&moved, from.index, turn)
+            }
+            Side::Pole(_) => {
+                let key = self.pole_key(from.uv);
+                vec![
+                    ChartPoint { uv: from.uv, key, segment: Segment::Pole },
+                    ChartPoint { uv: from.uv + turn, key, segment: Segment::Seam },
+                ]
+            }
+        }
     }
 }
 
-/// Where to cut a closed direction so that the seam keeps away from all holes: at `start` if none is near.
-pub(super) fn seam_beside(holes: &[OpenLoop], axis: usize, period: f64, start: f64) -> f64 {
+/// The points of a hole from one to another, in its own direction; from one to itself all round.
+pub(super) fn part_of(hole: &OpenLoop, from: usize, to: usize, by: DVec2) -> Vec<ChartPoint> {
+    let n = hole.points.len();
+    let count = if from == to { 0 } else { (to + n - from) % n };
+    (0..=count).map(|k| hole.points[(from + k) % n]).map(|p| ChartPoint { uv: p.uv + by, ..p }).collect()
+}
+
+/// Points of two loops to cut between, and by how many turns the second one moves, the shortest first:
+/// (square of the length, point of the first, point of the second, turns).
+fn straight_cuts(a: &OpenLoop, b: &OpenLoop, turn: DVec2, lengths: DVec2) -> Vec<(f64, usize, usize, f64)> {
+    let stride = |n: usize| n.div_ceil(400);
+    let mut candidates = Vec::new();
+    for i in (0..a.points.len()).step_by(stride(a.points.len())) {
+        for j in (0..b.points.len()).step_by(stride(b.points.len())) {
+            let d = b.points[j].uv - a.points[i].uv;
+            let turns = -whole_turns(d, turn);
+            let d = d + turn * turns;
+            candidates.push(((d.x * lengths.x).powi(2) + (d.y * lengths.y).powi(2), i, j, turns));
+        }
+    }
+    candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
+    // Of cuts that only rounding tells apart, the one between the first samples.
+    let scale = candidates[0].0;
+    candidates
+        .chunk_by_mut(|x, y| y.0 - x.0 <= 1e-9 * (scale + x.0))
+        .for_each(|equal| equal.sort_by_key(|c| (a.points[c.1].key, b.points[c.2].key)));
+    candidates
+}
+
+/// Where to cut a closed direction straight so that the seam keeps away from all holes, and how far it does:
+/// at `start` if none is near, and 0 where no such place exists.
+pub(super) fn seam_beside(holes: &[OpenLoop], axis: usize, period: f64, start: f64) -> (f64, f64) {
     const PLACES: usize = 64;
     if holes.is_empty() {
-        return start;
+        return (start, period);
     }
+    let extent = |hole: &OpenLoop| {
+        let low = hole.points.iter().fold(f64::INFINITY, |m, p| m.min(p.uv[axis]));
+        let high = hole.points.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.uv[axis]));
+        (low, high - low)
+    };
+    let extents: Vec<(f64, f64)> = holes.iter().map(extent).collect();
     let distance = |place: f64| {
-        holes.iter().fold(period, |nearest, hole| {
-            let low = hole.points.iter().fold(f64::INFINITY, |m, p| m.min(p.uv[axis]));
-            let high = hole.points.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.uv[axis]));
+        extents.iter().fold(period, |nearest, &(low, length)| {
             let behind = (place - low).rem_euclid(period);
-            if behind <= high - low { 0.0 } else { nearest.min(behind - (high - low)).min(period - behind) }
+            if behind <= length { 0.0 } else { nearest.min(behind - length).min(period - behind) }
         })
     };
+    let better = |best: (f64, f64), place: f64| {
+        let d = distance(place);
+        // Of places that only rounding tells apart, the first.
+        if d > best.1 + 1e-9 * period { (place, d) } else { best }
+    };
     let places = (0..PLACES).map(|k| start + period * k as f64 / PLACES as f64);
-    places
-        .fold((start, distance(start)), |best, place| {
-            let d = distance(place);
-            // Of places that only rounding tells apart, the first.
-            if d > best.1 + 1e-9 * period { (place, d) } else { best }
-        })
-        .0
-}
-
-/// The whole number of turns nearest to a vector.
-fn whole_turns(d: DVec2, turn: DVec2) -> f64 {
-    (d.dot(turn) / turn.length_squared()).round()
+    let best = places.fold((start, distance(start)), better);
+    if best.1 > 0.0 {
+        return best;
+    }
+    // The gaps between holes may be narrower than that: the middle of the widest.
+    let next = |end: f64| extents.iter().map(|e| (e.0 - end).rem_euclid(period)).fold(period, f64::min);
+    let ends = extents.iter().map(|&(low, length)| low + length);
+    ends.map(|end| start + (end + 0.5 * next(end) - start).rem_euclid(period)).fold(best, better)
 }

@@ -1,0 +1,59 @@
+//! The right part of every surface: each model of `corpus/region` has its area by a closed form.
+
+use chordal::{Job, JobOptions, Tolerance};
+use std::path::{Path, PathBuf};
+
+/// Windows and bands are cut into chords: at the tolerances below their areas are this near to the exact
+/// ones.
+const NEAR: f64 = 0.01;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus/region")
+}
+
+/// (name, area) of every model.
+fn models() -> Vec<(String, f64)> {
+    let index = std::fs::read_to_string(folder().join("INDEX.tsv")).expect("an index");
+    let row = |line: &str| {
+        let columns: Vec<&str> = line.split('\t').collect();
+        (columns[0].to_owned(), columns[2].parse().expect("an area"))
+    };
+    index.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn every_face_has_its_area() {
+    let models = models();
+    assert!(models.len() > 10, "{models:?}");
+    let mut faults = Vec::new();
+    for (name, area) in models {
+        for share in [0.001, 0.0002] {
+            let path = folder().join(&name).with_extension("step");
+            let options = JobOptions::default().with_tolerance(Tolerance::Percent(100.0 * share));
+            let report = match chordal::run(&Job::new(path).with_options(options)) {
+                Ok(outcome) => outcome.report,
+                Err(error) => {
+                    faults.push(format!("{name} at {share}: {error}"));
+                    continue;
+                }
+            };
+            if !report.clean {
+                faults.push(format!("{name} at {share}: {:?}", report.error_sentences()));
+            }
+            if (report.area - area).abs() > NEAR * area {
+                faults.push(format!("{name} at {share}: an area of {} for {area}", report.area));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+/// The face between two edges that coincide is listed, and its neighbours close through it.
+#[test]
+fn a_face_without_area_is_listed_and_the_solid_is_watertight() {
+    let path = folder().join("sliver_on_edge.step");
+    let report = chordal::run(&Job::new(path)).expect("a mesh").report;
+    assert!(report.clean, "{:?}", report.error_sentences());
+    assert_eq!(report.faces.zero_area, 1);
+    assert_eq!((report.shells.closed, report.shells.leaking), (1, 0));
+}

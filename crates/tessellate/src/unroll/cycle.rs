@@ -1,0 +1,95 @@
+//! A surface that is closed both ways, with holes in the way of every straight cut: two cuts through holes.
+//!
+//! ```text
+//!       │ cut
+//!   ┌───j───┐          The first cut begins and ends at the same hole, one period on: along it the surface becomes
+//!   │ root  │          a band between the two sides of the cut, which a second cut from the one to the other
+//!   └───i───┘          makes a polygon.
+//!       │ cut
+//! ```
+//!
+//! The side with the face on the left of the way up follows each hole from where the cut enters it to where
+//! it leaves it; the other side, on the way down, follows the rest of the hole.
+
+use super::cuts::{Cuts, Hop, Side, hold_beside};
+use super::winding::part_of;
+use super::{Unroll, area, shifted};
+use crate::chart::OpenLoop;
+use crate::keys::{ChartPoint, Segment};
+use chordal_nurbs::DVec2;
+
+impl Unroll<'_, '_> {
+    /// The polygon of a surface that is closed in u and in v; `None` where no cut is found.
+    pub(super) fn cut_twice(&mut self, holes: &mut Vec<OpenLoop>) -> Option<Vec<ChartPoint>> {
+        let [Some(period_u), Some(period_v)] = self.context.surface.periods else { return None };
+        let (turn, step) = (DVec2::new(period_u, 0.0), DVec2::new(0.0, period_v));
+        let root = holes.iter().position(|hole| area(&hole.points) < 0.0)?;
+        let start = holes[root].clone();
+        let mut others = holes.clone();
+        others.remove(root);
+        hold_beside(&mut others, &start, step, |p| p.y / period_v);
+        let end = OpenLoop { points: shifted(&start.points, step), ..start.clone() };
+        let lengths = self.lengths_at(start.points[0].uv);
+        let sides = [Side::Loop(&start), Side::Loop(&end)];
+        let mut cuts = Cuts::new(sides, &others, 0, turn, lengths, self.context.surface.periods);
+        cuts.repeat_walls([step, -step]);
+        let hops = cuts.chain()?;
+        drop(cuts);
+        let winding = self.sides_of_cycle(&start, &hops, &others, step);
+        let mut passed: Vec<usize> = hops[1..].iter().map(|hop| hop.from.node - 1).collect();
+        passed.sort_unstable();
+        for &hole in passed.iter().rev() {
+            others.remove(hole);
+        }
+        let polygon = self.cut(winding, &mut others).ok()?;
+        *holes = others;
+        Some(polygon)
+    }
+
+    /// The two sides of a cut from a hole to itself, one `step` on, as loops that wind round.
+    fn sides_of_cycle(
+        &mut self,
+        root: &OpenLoop,
+        hops: &[Hop],
+        holes: &[OpenLoop],
+        step: DVec2,
+    ) -> Vec<OpenLoop> {
+        let (first, last) = (hops[0].from, hops[hops.len() - 1].to);
+        let n = root.points.len();
+        // What leads from the root to where the cut arrives.
+        let by = last.uv - root.points[last.index].uv;
+        let around = |by: DVec2| (by - step).x / self.context.surface.periods[0].unwrap_or(1.0);
+        let turns = around(by).round() as i32;
+        let seam_at = |index: usize, by: DVec2| {
+            let point = root.points[index];
+            ChartPoint { uv: point.uv + by, segment: Segment::Seam, ..point }
+        };
+        let mut up = vec![seam_at(first.index, DVec2::ZERO)];
+        let mut inner = Vec::with_capacity(hops.len());
+        for (k, hop) in hops.iter().enumerate() {
+            inner.push(self.seam(&mut up, hop.to.uv));
+            if let Some(next) = hops.get(k + 1) {
+                let hole = &holes[hop.to.node - 1];
+                let by = hop.to.uv - hole.points[hop.to.index].uv;
+                up.extend(part_of(hole, hop.to.index, next.from.index, by));
+            }
+        }
+        let mut rest = part_of(root, last.index, first.index, by);
+        rest.pop();
+        up.extend(rest);
+        let mut down = vec![seam_at(last.index, by)];
+        for (k, hop) in hops.iter().enumerate().rev() {
+            Self::seam_back(&mut down, &inner[k], DVec2::ZERO);
+            if k > 0 {
+                let entry = hops[k - 1].to;
+                let hole = &holes[hop.from.node - 1];
+                let by = entry.uv - hole.points[entry.index].uv;
+                down.extend(part_of(hole, hop.from.index, entry.index, by));
+            }
+        }
+        let count = if first.index == last.index { n } else { (last.index + n - first.index) % n };
+        down.extend((0..count).map(|k| root.points[(first.index + k) % n]));
+        let open = |points: Vec<ChartPoint>, winding: [i32; 2]| OpenLoop { points, winding, outer: true };
+        vec![open(up, [turns, 1]), open(down, [-turns, -1])]
+    }
+}
