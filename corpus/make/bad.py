@@ -89,7 +89,7 @@ def missing_entity(path: Path) -> None:
     save(path, text.replace(first[0], ""))
 
 
-@bad_case("missing_edge", "one oriented edge of a loop is not in the file", exit="1", phrase="goes without 1 of its 4 edges")
+@bad_case("missing_edge", "one oriented edge of a loop is not in the file", exit="1", phrase="1 of 4 edges could not be read")
 def missing_edge(path: Path) -> None:
     text = plain(path.stem)
     loops = re.findall(r"=EDGE_LOOP\('',\(#\d+,(#\d+),#\d+,#\d+\)\)", text)

@@ -235,7 +235,7 @@ def huge_counts() -> str:
     return title + "Curves 2000000000\n7 0 0 3 2000000000 2 0 0 0\nSurfaces 0\nTriangulations 0\n\nTShapes 0\n\n"
 
 
-@bad("compound_bomb", "compounds that hold each other twice, sixty deep", exit="01", phrase="too many uses")
+@bad("compound_bomb", "compounds that hold each other twice, sixty deep", exit="01", phrase="too many references")
 def compound_bomb() -> str:
     b = Brep()
     shape = box(b, (1, 1, 1))
@@ -245,7 +245,7 @@ def compound_bomb() -> str:
     return b.text(shape)
 
 
-@bad("itself", "a shell that uses itself", exit="2", phrase="does not come before it")
+@bad("itself", "a shell that uses itself", exit="2", phrase="does not exist")
 def itself() -> str:
     b = Brep()
     shell = b.shell(("+", 1, 0))

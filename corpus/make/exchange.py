@@ -119,12 +119,12 @@ def obj_continued(path: Path) -> None:
          "-12 -11 -10 -9 -8 -7 \\", "-6 -5 -4 -3 -2 -1", *UNIT)
 
 
-@file("obj_call.obj", "other files are not read and commands are not run", faces=1, exits="1", phrase="other files are not read")
+@file("obj_call.obj", "other files are not read and commands are not run", faces=1, exits="1", phrase="which is not read")
 def obj_call(path: Path) -> None:
     text(path, "call other.obj", "csh touch corpus-was-here", *GRID, "cstype bezier", "deg 3 3", ALL, *UNIT)
 
 
-@file("obj_missing_vertex.obj", "one of two surfaces refers to a vertex that is not there", faces=2, exits="1", phrase="refers to v 99")
+@file("obj_missing_vertex.obj", "one of two surfaces refers to a vertex that is not there", faces=2, exits="1", phrase="v 99 is not defined")
 def obj_missing_vertex(path: Path) -> None:
     text(path, *GRID, "cstype bezier", "deg 3 3", ALL, *UNIT, ALL.replace(" 16", " 99"), *UNIT)
 
@@ -134,7 +134,7 @@ def obj_no_knots(path: Path) -> None:
     text(path, *GRID, "cstype bspline", "deg 3 3", ALL, "end")
 
 
-@file("obj_cut.obj", "the file ends within a surface", faces=1, phrase="ends within")
+@file("obj_cut.obj", "the file truncated inside a surface", faces=1, phrase="truncated inside")
 def obj_cut(path: Path) -> None:
     text(path, *GRID, "cstype bezier", "deg 3 3", ALL, "parm u 0 1", "parm v 0 1")
 
@@ -183,7 +183,7 @@ def geomdl_over_border(path: Path) -> None:
     dump(path, geomdl(circle(1.0, 1.0, 0.4, reversed=0), circle(0.0, 0.4, 0.3, reversed=0)))
 
 
-@file("geomdl_nothing_left.json", "a hole around the whole domain", faces=1, exits="2", phrase="leave nothing")
+@file("geomdl_nothing_left.json", "a hole around the whole domain", faces=1, exits="2", phrase="remove the whole surface")
 def geomdl_nothing_left(path: Path) -> None:
     dump(path, geomdl(circle(0.5, 0.5, 2.0, reversed=0)))
 
@@ -239,7 +239,7 @@ def model_cylinder(path: Path) -> None:
     dump(path, model(cylinder()))
 
 
-@file("model_bad_edge.json", "a face refers to an edge that is not there", faces=3, exits="1", phrase="there is no edge 7")
+@file("model_bad_edge.json", "a face refers to an edge that is not there", faces=3, exits="1", phrase="edge 7 does not exist")
 def model_bad_edge(path: Path) -> None:
     part = cylinder()
     part["faces"][2]["loops"][0]["edges"]["coedges"][0]["edge"] = 7

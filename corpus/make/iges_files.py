@@ -234,7 +234,7 @@ def looks() -> str:
 
 
 @bad("three_sides", "an outer boundary in space that leaves out one side of its patch and cuts its corners", exit="0",
-     phrase="runs along the border of its surface")
+     phrase="runs along the border of the surface")
 def three_sides() -> str:
     g = Iges()
     s = g.bilinear((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), (0.0, 10.0, 0.0), (10.0, 10.0, 2.0), status="00010000")
@@ -254,13 +254,13 @@ def binary() -> bytes:
     return b"B\x00\x00\x00\x30\x00\x20\x08\x17\x0f\x34\x08" + bytes(80)
 
 
-@bad("truncated", "the file ends in the middle of the parameters", exit="01", phrase="cut off")
+@bad("truncated", "the file ends in the middle of the parameters", exit="01", phrase="is missing")
 def truncated() -> str:
     text = make_plate()
     return text[: int(len(text) * 0.9)]
 
 
-@bad("missing_surface", "a trimmed surface refers to an entity that is not there", exit="012", phrase="not there")
+@bad("missing_surface", "a trimmed surface refers to an entity that is not there", exit="012", phrase="does not exist")
 def missing_surface() -> str:
     g = Iges()
     plate(g)
@@ -268,18 +268,18 @@ def missing_surface() -> str:
     return g.text()
 
 
-@bad("wrong_parameters", "a directory entry points to the parameters of another entity", exit="012", phrase="parameters are those of")
+@bad("wrong_parameters", "a directory entry points to the parameters of another entity", exit="012", phrase="the parameter record of")
 def wrong_parameters() -> str:
     text = make_plate()
     return text.replace(f"{128:>8}{1:>8}", f"{128:>8}{6:>8}", 1)
 
 
-@bad("nan", "a coordinate that is no number", exit="012", phrase="should be a number")
+@bad("nan", "a coordinate that is no number", exit="012", phrase="expected a number")
 def nan() -> str:
     return make_plate().replace("10.0,0.0,2.0,", "NaN0,0.0,2.0,", 1)
 
 
-@bad("cyclic_curve", "a composite curve that holds itself", exit="012", phrase="defined by itself")
+@bad("cyclic_curve", "a composite curve that holds itself", exit="012", phrase="is recursive or nested")
 def cyclic_curve() -> str:
     g = Iges()
     s = g.bilinear((0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0), (4.0, 4.0, 2.0), status="00010000")
@@ -295,7 +295,7 @@ def huge_counts() -> str:
     return g.text()
 
 
-@bad("instance_bomb", "subfigures that hold each other twice, thirty deep", exit="01", phrase="too many instances")
+@bad("instance_bomb", "subfigures that hold each other twice, thirty deep", exit="01", phrase="nodes; the rest is ignored")
 def instance_bomb() -> str:
     g = Iges()
     figure = g.add(308, 0, "plate", 1, plate(g, hole=False, status="00010000"), status="00000200")
@@ -306,7 +306,7 @@ def instance_bomb() -> str:
     return g.text()
 
 
-@bad("open_boundary", "the boundary lacks one of its sides", exit="01", phrase="joined along the surface")
+@bad("open_boundary", "the boundary lacks one of its sides", exit="01", phrase="closed along the surface")
 def open_boundary() -> str:
     g = Iges()
     s = g.bilinear((0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0), (4.0, 4.0, 0.0), status="00010000")
@@ -316,7 +316,7 @@ def open_boundary() -> str:
     return g.text()
 
 
-@bad("turned_curve", "one curve of a boundary runs against the others", exit="01", phrase="turned round")
+@bad("turned_curve", "one curve of a boundary runs against the others", exit="01", phrase="reversed")
 def turned_curve() -> str:
     g = Iges()
     s = g.bilinear((0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0), (4.0, 4.0, 0.0), status="00010000")
@@ -327,7 +327,7 @@ def turned_curve() -> str:
 
 
 @bad("not_a_solid", "a solid of constructive geometry (block, 150), which is no boundary representation", exit="012",
-     phrase="does not know")
+     phrase="is not supported")
 def not_a_solid() -> str:
     g = Iges()
     plate(g)

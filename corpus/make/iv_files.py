@@ -199,7 +199,7 @@ def decreasing_knots() -> str:
     return patch().replace("vKnotVector [ 0 0 0 1 1 1 ]", "vKnotVector [ 0 0 1 0 1 1 ]")
 
 
-@bad("open_profile", "a trim that does not close is closed", exit="01", phrase="closed by straight lines")
+@bad("open_profile", "a trim that does not close is closed", exit="01", phrase="closed with straight lines")
 def open_profile() -> str:
     trim = "  ProfileCoordinate2 { point [ 0.1 0.1, 0.9 0.1, 0.9 0.9 ] }\n  LinearProfile { index [ 0 1 2 ] }\n"
     return HEADER + group(coordinates(hill()), trim, SURFACE)

@@ -8,8 +8,8 @@ pub fn run(args: &ConvertArgs) -> Exit {
     let options = ConvertOptions::default().with_unsewn(args.unsewn);
     match chordal::convert(&args.input, &args.output, &options) {
         Ok(converted) => {
-            let lost: Vec<_> = converted.warnings.iter().filter(|warning| warning.lost).collect();
-            lost.iter().for_each(|warning| say(&format!("{}: problem: {warning}", args.input.display())));
+            let lost: Vec<_> = converted.issues.iter().filter(|issue| issue.is_error()).collect();
+            lost.iter().for_each(|issue| say(&format!("{}: problem: {issue}", args.input.display())));
             if lost.is_empty() { Exit::Clean } else { Exit::Undone }
         }
         Err(error) => {

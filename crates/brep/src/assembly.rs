@@ -1,6 +1,6 @@
 //! The model: parts and the tree that places them.
 
-use crate::{Color, NodeId, Part, PartId, Source, Warning};
+use crate::{Color, Issue, NodeId, Part, PartId, Source};
 use chordal_nurbs::DAffine3;
 
 /// One occurrence in the assembly tree, fully expanded: a part placed twice has two nodes.
@@ -36,7 +36,8 @@ pub struct Model {
     pub parts: Vec<Part>,
     pub nodes: Vec<Node>,
     pub roots: Vec<NodeId>,
-    pub warnings: Vec<Warning>,
+    /// What was repaired, guessed or left out while the file was read.
+    pub issues: Vec<Issue>,
 }
 
 impl Model {

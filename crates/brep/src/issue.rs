@@ -11,15 +11,18 @@ mod auditing;
 mod meshing;
 mod reading;
 mod result;
+mod values;
 pub mod words;
 
 pub use auditing::{AuditIssue, MeshDefect, PolylineDefect};
 pub use meshing::MeshIssue;
-pub use reading::ReadIssue;
+pub use reading::{ReadIssue, Word};
 pub use result::ResultIssue;
+pub use values::{Millimetres, Percent, Real, SplineFault};
 
 use crate::Source;
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 
 /// What an issue means for the result.
@@ -134,6 +137,47 @@ impl Issue {
     /// An issue about the entity at `source`.
     pub fn new(severity: Severity, source: Source, kind: impl Into<IssueKind>) -> Self {
         Self { severity, source, kind: kind.into() }
+    }
+
+    /// Something was repaired or guessed; no geometry is missing.
+    pub fn warning(source: Source, kind: impl Into<IssueKind>) -> Self {
+        Self::new(Severity::Warning, source, kind)
+    }
+
+    /// Geometry is missing.
+    pub fn error(source: Source, kind: impl Into<IssueKind>) -> Self {
+        Self::new(Severity::Error, source, kind)
+    }
+
+    /// The sentence for a place that names `owner` already: the entity is named only where it is another one.
+    pub fn about(&self, owner: Source) -> String {
+        if self.source == owner { self.kind.to_string() } else { self.to_string() }
+    }
+
+    /// The issue as one of `owner`: where it is about another entity, the sentence names that.
+    pub fn for_owner(&self, owner: Source) -> Issue {
+        if self.source == owner || self.source == Source::default() {
+            return Issue { source: owner, ..self.clone() };
+        }
+        Issue::new(self.severity, owner, ReadIssue::Of { issue: Box::new(self.clone()) })
+    }
+
+    /// True where geometry is missing or a promise is not kept.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}
+
+/// Severity, entity, line, code and sentence.
+impl Serialize for Issue {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("Issue", 5)?;
+        fields.serialize_field("severity", &self.severity)?;
+        fields.serialize_field("entity", &self.source.entity)?;
+        fields.serialize_field("line", &self.source.line)?;
+        fields.serialize_field("code", self.kind.code())?;
+        fields.serialize_field("message", &self.kind.to_string())?;
+        fields.end()
     }
 }
 

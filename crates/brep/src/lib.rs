@@ -14,9 +14,12 @@ pub mod winding;
 
 pub use assembly::{Model, Node, Placement};
 pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};
-pub use issue::{AuditIssue, Issue, IssueKind, MeshIssue, ReadIssue, ResultIssue, Severity};
+pub use issue::{
+    AuditIssue, Issue, IssueKind, MeshIssue, Millimetres, Percent, ReadIssue, Real, ResultIssue, Severity,
+    SplineFault, Word,
+};
 pub use part::{
     Body, BodyKind, Coedge, Color, Edge, Face, FaceGeometry, Loop, LooseItem, LooseKind, Part, Pcurve, Shell,
     TessellatedItem, Vertex,
 };
-pub use source::{Source, Warning};
+pub use source::Source;

@@ -1,6 +1,6 @@
 //! One part: vertices, edges, faces, shells and bodies in the part's own coordinates and units.
 
-use crate::{EdgeId, FaceId, ShellId, Source, VertexId};
+use crate::{EdgeId, FaceId, Issue, ShellId, Source, VertexId};
 use chordal_nurbs::{Curve, Curve2, DVec3, Range, Surface};
 use std::sync::Arc;
 
@@ -62,8 +62,8 @@ pub enum Loop {
 #[derive(Clone, Debug, PartialEq)]
 pub enum FaceGeometry {
     Surface(Arc<Surface>),
-    /// The face could not be understood; it stays in the model and is reported with this reason.
-    Failed(String),
+    /// The face cannot be used; it stays in the model and is reported with this reason.
+    Failed(Issue),
 }
 
 /// A bounded piece of a surface.
@@ -83,6 +83,22 @@ pub struct Face {
 }
 
 impl Face {
+    /// The surface; `None` for a face that failed.
+    pub fn surface(&self) -> Option<&Surface> {
+        match &self.geometry {
+            FaceGeometry::Surface(surface) => Some(surface),
+            FaceGeometry::Failed(_) => None,
+        }
+    }
+
+    /// Why the face has no surface; `None` for a face that has one.
+    pub fn failure(&self) -> Option<&Issue> {
+        match &self.geometry {
+            FaceGeometry::Surface(_) => None,
+            FaceGeometry::Failed(issue) => Some(issue),
+        }
+    }
+
     /// True where triangles must run against the surface's own normal Su × Sv.
     pub fn normal_reversed(&self) -> bool {
         !self.same_sense ^ self.flipped

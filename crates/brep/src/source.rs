@@ -20,18 +20,3 @@ impl fmt::Display for Source {
         }
     }
 }
-
-/// Something in the file that was repaired, guessed or left out; one sentence.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Warning {
-    pub source: Source,
-    pub message: String,
-    /// Part of the file's shape may be missing from the model because of this.
-    pub lost: bool,
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.source, self.message)
-    }
-}

@@ -46,7 +46,7 @@ pub(crate) fn account(input: InputReport, options: &JobOptions, found: &Findings
         loose: loose(found.model),
         ..Report::default()
     };
-    report.problems.extend(found.model.warnings.iter().map(warning));
+    report.problems.extend(found.model.issues.iter().map(Problem::new));
     for (entry, options) in entries(found).iter().zip(&found.resolved.parts) {
         add_part(&mut report, entry, options.tolerance);
         if let Some(sewn) = entry.sewn {
@@ -157,13 +157,6 @@ pub(crate) fn loose(model: &Model) -> Vec<LooseEntry> {
         part.loose.iter().map(entry).collect()
     };
     model.parts.iter().flat_map(of_part).collect()
-}
-
-/// What the reader repaired, guessed or dropped.
-pub(crate) fn warning(warning: &chordal_brep::Warning) -> Problem {
-    let severity = if warning.lost { Severity::Error } else { Severity::Warning };
-    let kind = chordal_brep::ReadIssue::Other(warning.message.clone());
-    Problem::new(&Issue::new(severity, warning.source, kind))
 }
 
 impl Report {

@@ -19,14 +19,14 @@ impl ConvertOptions {
 }
 
 /// What was written.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Converted {
     pub parts: usize,
     /// Of all parts, instances not counted.
     pub faces: usize,
     pub bytes: usize,
     /// What the reader repaired, guessed or left out.
-    pub warnings: Vec<chordal_brep::Warning>,
+    pub issues: Vec<chordal_brep::Issue>,
 }
 
 /// Reads an exact model and writes the whole of it as Chordal's own JSON.
@@ -50,6 +50,6 @@ pub fn convert(input: &Path, output: &Path, options: &ConvertOptions) -> Result<
         parts: model.parts.len(),
         faces: model.parts.iter().map(|part| part.faces.len()).sum(),
         bytes: text.len(),
-        warnings: model.warnings,
+        issues: model.issues,
     })
 }

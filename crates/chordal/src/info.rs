@@ -1,12 +1,12 @@
 //! What is in a CAD file, before anything is meshed.
 
-use crate::account::{loose, warning};
+use crate::account::loose;
 use crate::gaps::{Gap, gaps};
 use crate::names::face_kind;
 use crate::placement::{PartUse, part_uses};
 use crate::report::{GapSurvey, LooseEntry, Problem, entity_name};
 use crate::tight_box::{edge_box, tight_box};
-use chordal_brep::{BodyKind, FaceGeometry, Issue, Model, NodeId, Part, ReadIssue, Severity};
+use chordal_brep::{BodyKind, Model, NodeId, Part};
 use chordal_sew::{gap_survey, has_topology, open_edges};
 use chordal_tessellate::Cancel;
 use rayon::prelude::*;
@@ -117,7 +117,7 @@ pub fn info(model: &Model) -> Info {
         parts,
         tree: model.roots.iter().map(|&root| node_info(model, root)).collect(),
         loose: loose(model),
-        problems: model.warnings.iter().map(warning).chain(failed(model)).collect(),
+        problems: model.issues.iter().map(Problem::new).chain(failed(model)).collect(),
     }
 }
 
@@ -169,12 +169,8 @@ fn largest(parts: &[PartInfo]) -> GapInfo {
 /// The faces that could not be read.
 fn failed(model: &Model) -> impl Iterator<Item = Problem> {
     let of_part = |part: &Part| -> Vec<Problem> {
-        let problem = |face: &chordal_brep::Face| match &face.geometry {
-            FaceGeometry::Surface(_) => None,
-            FaceGeometry::Failed(reason) => {
-                let issue = Issue::new(Severity::Error, face.source, ReadIssue::Other(reason.clone()));
-                Some(Problem::new(&issue).in_part(&part.name))
-            }
+        let problem = |face: &chordal_brep::Face| {
+            face.failure().map(|issue| Problem::new(&issue.for_owner(face.source)).in_part(&part.name))
         };
         part.faces.iter().filter_map(problem).collect()
     };

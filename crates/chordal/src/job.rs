@@ -207,8 +207,10 @@ fn something_to_mesh(model: &Model, input: &Path) -> Result<(), JobError> {
         for face in &part.faces {
             match &face.geometry {
                 FaceGeometry::Surface(_) => return Ok(()),
-                FaceGeometry::Failed(reason) => {
-                    first.get_or_insert_with(|| format!("the face at {}: {reason}", face.source));
+                FaceGeometry::Failed(issue) => {
+                    first.get_or_insert_with(|| {
+                        format!("the face at {}: {}", face.source, issue.about(face.source))
+                    });
                 }
             }
         }

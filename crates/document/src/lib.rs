@@ -8,6 +8,7 @@ mod geometry;
 mod layout;
 mod load;
 mod load_geometry;
+mod load_issue;
 mod load_part;
 mod real;
 mod save;

@@ -1,8 +1,9 @@
 //! A model out of the document's form: the tree, and the parts that it places.
 
 use crate::load_geometry::{Sound, p3};
+use crate::load_issue::{issue, source};
 use crate::load_part::part;
-use crate::schema::{Document, Node, Source, Warning};
+use crate::schema::{Document, Node};
 use crate::{DocumentError, real::Real};
 use chordal_brep as brep;
 use chordal_nurbs::{DAffine3, DVec3};
@@ -10,13 +11,9 @@ use chordal_nurbs::{DAffine3, DVec3};
 /// Trees are walked by recursion in places; deeper ones are meant to break something.
 const MAX_DEPTH: usize = 1000;
 
-pub(crate) fn source((entity, line): Source) -> brep::Source {
-    brep::Source { entity, line }
-}
-
 pub(crate) fn model(document: Document) -> Result<brep::Model, DocumentError> {
-    let mut warnings: Vec<_> = document.warnings.into_iter().map(warning).collect();
-    let parts: Vec<_> = document.parts.into_iter().map(|p| part(p, &mut warnings)).collect();
+    let mut issues: Vec<_> = document.warnings.into_iter().map(issue).collect();
+    let parts: Vec<_> = document.parts.into_iter().map(|p| part(p, &mut issues)).collect();
     let bad = |node: usize, why: &'static str| DocumentError::Tree { node, why };
     let mut nodes = Vec::with_capacity(document.nodes.len());
     for (i, written) in document.nodes.into_iter().enumerate() {
@@ -34,7 +31,7 @@ pub(crate) fn model(document: Document) -> Result<brep::Model, DocumentError> {
         parts,
         nodes,
         roots,
-        warnings,
+        issues,
     })
 }
 
@@ -57,7 +54,7 @@ fn check_tree(nodes: &[brep::Node], roots: &[brep::NodeId]) -> Result<(), Docume
 
 fn node(node: Node) -> Sound<brep::Node> {
     let [x, y, z, translation]: [DVec3; 4] = {
-        let axis = |p: [Real; 3]| p3(p, "the transform");
+        let axis = |p: [Real; 3]| p3(p, "transform");
         let [a, b, c, d] = node.transform;
         [axis(a)?, axis(b)?, axis(c)?, axis(d)?]
     };
@@ -69,8 +66,4 @@ fn node(node: Node) -> Sound<brep::Node> {
         color: node.color.map(brep::Color),
         source: source(node.source),
     })
-}
-
-fn warning(warning: Warning) -> brep::Warning {
-    brep::Warning { source: source(warning.source), message: warning.message, lost: warning.lost }
 }

@@ -1,13 +1,13 @@
 //! A part out of the document's form. What refers to something that is not there, or that makes no sense, does not
-//! enter the part: a face fails with the reason, everything else is left out with a warning.
+//! enter the part: a face fails with the reason, everything else is ignored with an issue.
 
-use crate::load::source;
 use crate::load_geometry::{Sound, Surfaces, curve2, finite, p3, range};
+use crate::load_issue::{issue, source};
 use crate::schema::{
-    Body, BodyKind, Coedge, Edge, Face, Loop, LooseItem, LooseKind, Part, Pcurve, Shell, TessellatedItem,
-    Vertex,
+    Body, BodyKind, Coedge, Edge, Face, Failure, Loop, LooseItem, LooseKind, Part, Pcurve, Shell,
+    TessellatedItem, Vertex,
 };
-use brep::{EdgeId, FaceId, ShellId, VertexId};
+use brep::{EdgeId, FaceId, Issue, ReadIssue, ShellId, VertexId};
 use chordal_brep as brep;
 use std::sync::Arc;
 
@@ -17,10 +17,10 @@ struct Loader<'w> {
     vertices: Vec<Sound<VertexId>>,
     edges: Vec<Sound<EdgeId>>,
     part: brep::Part,
-    warnings: &'w mut Vec<brep::Warning>,
+    issues: &'w mut Vec<Issue>,
 }
 
-pub(crate) fn part(part: Part, warnings: &mut Vec<brep::Warning>) -> brep::Part {
+pub(crate) fn part(part: Part, issues: &mut Vec<Issue>) -> brep::Part {
     let mut loader = Loader {
         surfaces: Surfaces::default(),
         vertices: Vec::with_capacity(part.vertices.len()),
@@ -28,12 +28,12 @@ pub(crate) fn part(part: Part, warnings: &mut Vec<brep::Warning>) -> brep::Part 
         part: brep::Part {
             name: part.name,
             color: part.color.map(brep::Color),
-            uncertainty: part.uncertainty.and_then(|u| finite(u, "the uncertainty").ok()),
+            uncertainty: part.uncertainty.and_then(|u| finite(u, "uncertainty").ok()),
             source: source(part.source),
             loose: part.loose.into_iter().map(loose).collect(),
             ..brep::Part::default()
         },
-        warnings,
+        issues,
     };
     part.surfaces.into_iter().for_each(|s| loader.surfaces.add(s));
     part.vertices.into_iter().for_each(|v| loader.vertex(v));
@@ -45,17 +45,17 @@ pub(crate) fn part(part: Part, warnings: &mut Vec<brep::Warning>) -> brep::Part 
     loader.part
 }
 
-fn known<T: Copy>(list: &[Sound<T>], place: u32, what: &str) -> Sound<T> {
+fn known<T: Copy>(list: &[Sound<T>], place: u32, what: &'static str) -> Sound<T> {
     match list.get(place as usize) {
         Some(Ok(id)) => Ok(*id),
-        Some(Err(why)) => Err(format!("{what} {place}: {why}")),
-        None => Err(format!("there is no {what} {place}")),
+        Some(Err(why)) => Err(why.clone().within(what, place as usize)),
+        None => Err(ReadIssue::NotFound { what, number: place.into() }),
     }
 }
 
 impl Loader<'_> {
     fn vertex(&mut self, vertex: Vertex) {
-        let loaded = p3(vertex.point, "its point").map(|point| {
+        let loaded = p3(vertex.point, "point").map(|point| {
             self.part.vertices.push(brep::Vertex { point, source: source(vertex.source) });
             VertexId::from(self.part.vertices.len() - 1)
         });
@@ -74,7 +74,7 @@ impl Loader<'_> {
         let vertex = |place| known(&self.vertices, place, "vertex");
         let (start, end) = (vertex(edge.start)?, vertex(edge.end)?);
         if edge.curve.is_none() && start != end {
-            return Err("it has no curve between its two vertices".into());
+            return Err(ReadIssue::Missing { what: "curve between the two vertices" });
         }
         Ok(brep::Edge {
             curve: edge.curve.map(|c| self.surfaces.curve(c)).transpose()?.map(Arc::new),
@@ -86,16 +86,22 @@ impl Loader<'_> {
     }
 
     fn face(&mut self, face: Face) {
+        let at = source(face.source);
+        let error = |why: ReadIssue| Issue::error(at, why);
         let geometry = match (face.surface, face.failed) {
-            (_, Some(reason)) => Err(reason),
-            (Some(place), None) => self.surfaces.get(place),
-            (None, None) => Err("it has no surface".into()),
+            (_, Some(Failure::Issue(failure))) => Err(issue(failure)),
+            (_, Some(Failure::Sentence(sentence))) => {
+                Err(error(ReadIssue::Recorded { code: "recorded", sentence }))
+            }
+            (Some(place), None) => self.surfaces.get(place).map_err(error),
+            (None, None) => Err(error(ReadIssue::NoSurface)),
         };
+        let failed = brep::FaceGeometry::Failed;
         let loops = face.loops.into_iter().map(|l| self.boundary(l)).collect::<Sound<Vec<_>>>();
         let (geometry, loops) = match (geometry, loops) {
             (Ok(surface), Ok(loops)) => (brep::FaceGeometry::Surface(surface), loops),
-            (Err(why), loops) => (brep::FaceGeometry::Failed(why), loops.unwrap_or_default()),
-            (_, Err(why)) => (brep::FaceGeometry::Failed(why), Vec::new()),
+            (Err(why), loops) => (failed(why), loops.unwrap_or_default()),
+            (_, Err(why)) => (failed(error(why)), Vec::new()),
         };
         self.part.faces.push(brep::Face {
             geometry,
@@ -105,7 +111,7 @@ impl Loader<'_> {
             name: face.name,
             color: face.color.map(brep::Color),
             layer: face.layer,
-            source: source(face.source),
+            source: at,
         });
     }
 
@@ -119,7 +125,7 @@ impl Loader<'_> {
             Loop::Vertex(place) => Ok(brep::Loop::Vertex(known(&self.vertices, place, "vertex")?)),
             Loop::Polygon { vertices, outer } => {
                 if vertices.len() < 3 {
-                    return Err(format!("a polygon has {} corners", vertices.len()));
+                    return Err(ReadIssue::TooFew { what: "corners", found: vertices.len(), least: 3 });
                 }
                 let vertex = |place| known(&self.vertices, place, "vertex");
                 Ok(brep::Loop::Polygon {
@@ -135,7 +141,7 @@ impl Loader<'_> {
             |p: Pcurve| Ok(brep::Pcurve { curve: Arc::new(curve2(p.curve)?), range: range(p.range)? });
         let edge = known(&self.edges, coedge.edge, "edge")?;
         let pcurves = coedge.pcurves.into_iter().map(pcurve).collect::<Sound<_>>();
-        let pcurves = pcurves.map_err(|why| format!("parameter curve of edge {}: {why}", coedge.edge))?;
+        let pcurves = pcurves.map_err(|why| why.within("parameter curve of edge", coedge.edge as usize))?;
         Ok(brep::Coedge { edge, forward: coedge.forward, pcurves })
     }
 
@@ -147,8 +153,8 @@ impl Loader<'_> {
             if coedge.forward { (edge.start, edge.end) } else { (edge.end, edge.start) }
         };
         match (0..coedges.len()).find(|&i| ends(i).1 != ends(i + 1).0) {
-            Some(i) => Err(format!("a loop is broken after its coedge {i}")),
-            None if coedges.is_empty() => Err("a loop has no coedges".into()),
+            Some(i) => Err(ReadIssue::LoopBroken { coedge: i }),
+            None if coedges.is_empty() => Err(ReadIssue::NoEdges),
             None => Ok(()),
         }
     }
@@ -179,12 +185,12 @@ impl Loader<'_> {
     }
 
     /// The places of a list that exist, with a warning for the others.
-    fn present(&mut self, list: Vec<u32>, count: usize, what: &str, at: (u64, u32)) -> Vec<u32> {
+    fn present(&mut self, list: Vec<u32>, count: usize, what: &'static str, at: (u64, u32)) -> Vec<u32> {
         let (there, missing): (Vec<u32>, Vec<u32>) =
             list.into_iter().partition(|&place| (place as usize) < count);
         if let Some(first) = missing.first() {
-            let message = format!("there is no {what} {first} in part {:?}", self.part.name);
-            self.warnings.push(brep::Warning { source: source(at), message, lost: true });
+            let missing = ReadIssue::NotFound { what, number: i64::from(*first) };
+            self.issues.push(Issue::error(source(at), missing));
         }
         there
     }
@@ -194,9 +200,8 @@ impl Loader<'_> {
         match tessellated(item) {
             Ok(item) => self.part.tessellated.push(item),
             Err(why) => {
-                let message =
-                    format!("tessellated item {place} of part {:?} is left out: {why}", self.part.name);
-                self.warnings.push(brep::Warning { source: at, message, lost: true });
+                let what = format!("tessellated item {place} of part {:?}", self.part.name).into();
+                self.issues.push(Issue::error(at, ReadIssue::Ignored { what, cause: why.boxed() }));
             }
         }
     }
@@ -205,17 +210,17 @@ impl Loader<'_> {
 fn tessellated(item: TessellatedItem) -> Sound<brep::TessellatedItem> {
     let count = item.points.len();
     if let Some(corner) = item.triangles.iter().flatten().find(|&&c| c as usize >= count) {
-        return Err(format!("it has {count} points and a triangle with corner {corner}"));
+        return Err(ReadIssue::NotFound { what: "corner", number: i64::from(*corner) });
     }
     if !item.normals.is_empty() && item.normals.len() != count {
-        return Err(format!("it has {count} points and {} normals", item.normals.len()));
+        return Err(ReadIssue::Count { what: "normals", found: item.normals.len(), expected: count });
     }
     let list = |points: Vec<_>, what| points.into_iter().map(|p| p3(p, what)).collect::<Sound<Vec<_>>>();
     Ok(brep::TessellatedItem {
         name: item.name,
-        points: list(item.points, "a point")?,
+        points: list(item.points, "point")?,
         triangles: item.triangles,
-        normals: list(item.normals, "a normal")?,
+        normals: list(item.normals, "normal")?,
         color: item.color.map(brep::Color),
         source: source(item.source),
     })

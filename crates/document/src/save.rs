@@ -2,8 +2,8 @@
 
 use crate::save_geometry::{Surfaces, curve2, p3};
 use crate::schema::{
-    Body, BodyKind, Coedge, Document, Edge, Face, Loop, LooseItem, LooseKind, Node, Part, Pcurve, Shell,
-    Source, TessellatedItem, Vertex, Warning,
+    Body, BodyKind, Coedge, Document, Edge, Face, Failure, Loop, LooseItem, LooseKind, Node, Part, Pcurve,
+    Shell, Source, TessellatedItem, Vertex, Warning,
 };
 use crate::{DocumentError, SCHEMA, real::Real};
 use chordal_brep as brep;
@@ -20,7 +20,7 @@ pub(crate) fn document(model: &brep::Model) -> Res<Document> {
         parts: model.parts.iter().map(part).collect::<Res<_>>()?,
         nodes: model.nodes.iter().map(node).collect(),
         roots: model.roots.iter().map(|id| id.0).collect(),
-        warnings: model.warnings.iter().map(warning).collect(),
+        warnings: model.issues.iter().map(warning).collect(),
     })
 }
 
@@ -44,8 +44,9 @@ fn node(node: &brep::Node) -> Node {
     }
 }
 
-fn warning(warning: &brep::Warning) -> Warning {
-    Warning { message: warning.message.clone(), lost: warning.lost, source: source(warning.source) }
+fn warning(issue: &brep::Issue) -> Warning {
+    let code = issue.kind.code().to_owned();
+    Warning { code, message: issue.kind.to_string(), lost: issue.is_error(), source: source(issue.source) }
 }
 
 fn part(part: &brep::Part) -> Res<Part> {
@@ -86,7 +87,7 @@ fn edge(edge: &brep::Edge, surfaces: &mut Surfaces) -> Res<Edge> {
 fn face(face: &brep::Face, surfaces: &mut Surfaces) -> Res<Face> {
     let (surface, failed) = match &face.geometry {
         brep::FaceGeometry::Surface(surface) => (Some(surfaces.place(surface)?), None),
-        brep::FaceGeometry::Failed(reason) => (None, Some(reason.clone())),
+        brep::FaceGeometry::Failed(reason) => (None, Some(Failure::Issue(warning(reason)))),
     };
     Ok(Face {
         surface,

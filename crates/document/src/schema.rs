@@ -57,11 +57,23 @@ pub(crate) struct Node {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Warning {
+    /// The code of the issue; documents of before have none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub code: String,
     pub message: String,
     #[serde(default, skip_serializing_if = "no")]
     pub lost: bool,
     #[serde(default, skip_serializing_if = "nowhere")]
     pub source: Source,
+}
+
+/// Why a face has no surface.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum Failure {
+    Issue(Warning),
+    /// A sentence, as documents of before have it.
+    Sentence(String),
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -146,7 +158,7 @@ pub(crate) struct Face {
     pub surface: Option<usize>,
     /// Why there is no surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub failed: Option<String>,
+    pub failed: Option<Failure>,
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     pub same_sense: bool,
     #[serde(default, skip_serializing_if = "no")]

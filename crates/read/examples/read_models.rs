@@ -50,7 +50,7 @@ fn main() {
             model.roots.len(),
             model.placed_faces(),
             failed.len(),
-            model.warnings.len(),
+            model.issues.len(),
             seconds * 1e3,
             bytes.len() as f64 / 1e6 / seconds,
             peak_megabytes(),
@@ -59,7 +59,7 @@ fn main() {
         for reason in failed.iter().take(5) {
             println!("    failed: {reason}");
         }
-        for warning in model.warnings.iter().take(8) {
+        for warning in model.issues.iter().take(8) {
             println!("    {warning}");
         }
     }

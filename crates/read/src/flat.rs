@@ -1,6 +1,6 @@
 //! Models of formats that know neither parts nor a tree: one part, placed once.
 
-use chordal_brep::{Model, Node, NodeId, Part, PartId, Source, Warning};
+use chordal_brep::{Issue, Model, Node, NodeId, Part, PartId, Source};
 use chordal_nurbs::{DAffine3, DVec3};
 
 /// The unit that a file's coordinates are in.
@@ -23,7 +23,7 @@ pub(crate) fn model(
     schema: String,
     unit: LengthUnit,
     mut part: Part,
-    warnings: Vec<Warning>,
+    issues: Vec<Issue>,
 ) -> Model {
     if part.name.is_empty() {
         name.clone_into(&mut part.name);
@@ -43,6 +43,6 @@ pub(crate) fn model(
         parts: vec![part],
         nodes: vec![root],
         roots: vec![NodeId(0)],
-        warnings,
+        issues,
     }
 }

@@ -3,8 +3,8 @@
 //! The format is recognised by content. Everything that can be saved arrives: what was repaired or left out becomes
 //! one of the model's warnings, a face that cannot be understood a failed face.
 
+mod assemble;
 mod brep_text;
-mod build;
 mod error;
 mod flat;
 mod flat_caps;

@@ -18,8 +18,10 @@ mod tests;
 mod untangle;
 
 use crate::Winding;
+use crate::assemble::Notes;
 use chordal_brep::{
-    Body, BodyId, BodyKind, Color, Face, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source, Warning,
+    Body, BodyId, BodyKind, Color, Face, FaceGeometry, FaceId, Issue, Loop, Part, ReadIssue, Shell, ShellId,
+    Source,
 };
 use chordal_nurbs::{Curve2, DVec2, Range, Surface, UvBox};
 use std::sync::Arc;
@@ -84,19 +86,19 @@ pub(crate) struct Look {
 }
 
 /// Adds the face that `trims` cut out of a surface (without trims: all of it); where they have several outer loops, one
-/// face for each. What was repaired is added to `warnings`; a face that cannot be made becomes a failed one.
+/// face for each. What was repaired is added to `notes`; a face that cannot be made becomes a failed one.
 pub(crate) fn add_faces(
     part: &mut Part,
     surface: &Arc<Surface>,
     trims: &[TrimLoop],
     look: &Look,
-    warnings: &mut Vec<Warning>,
+    notes: &Notes,
 ) -> Vec<FaceId> {
     let scale = Scale::new(surface, trims);
     let mut chains = Vec::with_capacity(trims.len());
     let mut problem = None;
     for (i, trim) in trims.iter().enumerate() {
-        match chain::closed(trim, i, &scale, warnings) {
+        match chain::closed(trim, i, &scale, notes) {
             Ok(Some(found)) => chains.push(found),
             Ok(None) => {}
             Err(reason) => problem = problem.or(Some(reason)),
@@ -107,7 +109,7 @@ pub(crate) fn add_faces(
         None if chains.is_empty() => Ok(vec![natural::loops(surface)]),
         None => nest::groups(surface, chains, &scale).map(|groups| {
             if let Some(places) = groups.untangled {
-                warnings.push(untangled_warning(look.source, trims.len(), places));
+                notes.warn(look.source, ReadIssue::TrimsUntangled { loops: trims.len(), places });
             }
             groups.faces
         }),
@@ -120,22 +122,20 @@ pub(crate) fn add_faces(
                 push_face(part, FaceGeometry::Surface(surface.clone()), loops, look)
             })
             .collect(),
-        Err(reason) => vec![push_face(part, FaceGeometry::Failed(reason), Vec::new(), look)],
+        Err(reason) => {
+            vec![push_face(part, FaceGeometry::Failed(Issue::error(look.source, reason)), Vec::new(), look)]
+        }
     }
 }
 
-fn untangled_warning(source: Source, loops: usize, places: usize) -> Warning {
-    let message = if loops == 1 {
-        format!("its trim loop crosses or touches itself at {places} places; a vertex was set at each")
-    } else {
-        format!("its {loops} trim loops cross or touch at {places} places; a vertex was set at each")
-    };
-    Warning { source, message, lost: false }
+/// Adds a face that could not be understood.
+pub(crate) fn add_failed(part: &mut Part, reason: impl Into<ReadIssue>, look: &Look) -> FaceId {
+    push_failed(part, Issue::error(look.source, reason.into()), look)
 }
 
-/// Adds a face that could not be understood.
-pub(crate) fn add_failed(part: &mut Part, reason: String, look: &Look) -> FaceId {
-    push_face(part, FaceGeometry::Failed(reason), Vec::new(), look)
+/// Adds a face that fails because of an issue, which may be one of another entity.
+pub(crate) fn push_failed(part: &mut Part, issue: Issue, look: &Look) -> FaceId {
+    push_face(part, FaceGeometry::Failed(issue), Vec::new(), look)
 }
 
 /// Adds a body of one shell that holds these faces.

@@ -17,10 +17,10 @@ fn model(name: &str) -> Model {
     read_file(corpus().join(format!("{name}.step"))).expect("a corpus file is readable")
 }
 
-fn failures(model: &Model) -> Vec<&str> {
+fn failures(model: &Model) -> Vec<String> {
     let faces = model.parts.iter().flat_map(|part| &part.faces);
     let failed = faces.filter_map(|face| match &face.geometry {
-        FaceGeometry::Failed(reason) => Some(reason.as_str()),
+        FaceGeometry::Failed(reason) => Some(reason.to_string()),
         FaceGeometry::Surface(_) => None,
     });
     failed.collect()
@@ -58,8 +58,8 @@ fn broken_files_end_in_a_sentence_or_are_saved() {
                 continue;
             }
             Ok(model) => {
-                let warned = model.warnings.iter().map(ToString::to_string);
-                warned.chain(failures(&model).into_iter().map(str::to_owned)).collect::<Vec<_>>().join("\n")
+                let warned = model.issues.iter().map(ToString::to_string);
+                warned.chain(failures(&model)).collect::<Vec<_>>().join("\n")
             }
         };
         if !said.to_lowercase().contains(&phrase) {

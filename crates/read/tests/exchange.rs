@@ -28,10 +28,10 @@ fn rows() -> Vec<(String, usize, String, String)> {
 fn said(model: &Model) -> String {
     let faces = model.parts.iter().flat_map(|part| &part.faces);
     let failed = faces.filter_map(|face| match &face.geometry {
-        FaceGeometry::Failed(reason) => Some(reason.clone()),
+        FaceGeometry::Failed(reason) => Some(reason.to_string()),
         FaceGeometry::Surface(_) => None,
     });
-    failed.chain(model.warnings.iter().map(ToString::to_string)).collect::<Vec<_>>().join("\n")
+    failed.chain(model.issues.iter().map(ToString::to_string)).collect::<Vec<_>>().join("\n")
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! JSON exported by geomdl: real exports, and what is wrong with made ones.
 
-use chordal_brep::{FaceGeometry, Loop, LooseKind, Model};
+use chordal_brep::{FaceGeometry, Loop, LooseKind, Model, ReadIssue};
 use chordal_read::{read_bytes, read_file};
 use proptest::prelude::*;
 use std::path::PathBuf;
@@ -23,10 +23,10 @@ fn rows() -> Vec<(PathBuf, usize)> {
     rows.map(|row| (folder.join("json").join(row[1]), row[6].parse().expect("a number of faces"))).collect()
 }
 
-fn failures(model: &Model) -> Vec<&str> {
+fn failures(model: &Model) -> Vec<String> {
     let faces = model.parts.iter().flat_map(|part| &part.faces);
     let failed = faces.filter_map(|face| match &face.geometry {
-        FaceGeometry::Failed(reason) => Some(reason.as_str()),
+        FaceGeometry::Failed(reason) => Some(reason.to_string()),
         FaceGeometry::Surface(_) => None,
     });
     failed.collect()
@@ -90,7 +90,7 @@ fn curves_of_a_container_are_put_in_order() {
     let text = square(&container);
     assert_eq!(loops(&text), [3]);
     let model = read_bytes(text.as_bytes(), "square").expect("readable");
-    assert!(model.warnings.iter().any(|w| w.message.contains("turned round")), "{:?}", model.warnings);
+    assert!(model.issues.iter().any(|w| w.kind == ReadIssue::EdgeTurned.into()), "{:?}", model.issues);
 }
 
 #[test]
@@ -103,13 +103,13 @@ fn an_open_trim_is_closed_along_the_border() {
 fn what_is_wrong_is_said() {
     let whole = square(TRIANGLE);
     for (from, to, phrase) in [
-        ("\"degree_u\": 1", "\"degree_u\": 2", "4 knots do not fit 2 control points of degree 2"),
+        ("\"degree_u\": 1", "\"degree_u\": 2", "4 knots for 2 control points of degree 2"),
         ("[0, 0, 1, 1]", "[0, 2, 1, 1]", "knot 2 decreases"),
-        ("[0, 0, 0]", "[0]", "1 coordinates"),
+        ("[0, 0, 0]", "[0]", "number of coordinates of a control point is 1, at least 2 needed"),
         ("[0, 0, 0]", "[0, \"a\", 0]", "invalid type"),
         ("\"size_v\": 2,", "", "size_v"),
         ("\"freeform\"", "\"hyperform\"", "hyperform"),
-        ("[0.8, 0.2]", "[0.8]", "its trim 1: a point has 1 coordinates"),
+        ("[0.8, 0.2]", "[0.8]", "trim 1: number of coordinates of a point is 1"),
     ] {
         let broken = whole.replacen(from, to, 1);
         assert_ne!(broken, whole, "{from}");
@@ -132,7 +132,7 @@ fn curves_are_loose_and_volumes_lost() {
     assert_eq!(model.parts[0].loose[0].kind, LooseKind::Wire);
     let volume = r#"{"shape": {"type": "volume", "count": 1, "data": [{"degree_w": 1}]}}"#;
     let model = read_bytes(volume.as_bytes(), "v").expect("readable");
-    assert!(model.warnings[0].lost, "{:?}", model.warnings);
+    assert!(model.issues[0].is_error(), "{:?}", model.issues);
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn folder() -> Option<PathBuf> {
 fn failed(model: &Model) -> Vec<String> {
     let faces = model.parts.iter().flat_map(|part| &part.faces);
     let reason = |geometry: &FaceGeometry| match geometry {
-        FaceGeometry::Failed(reason) => Some(reason.clone()),
+        FaceGeometry::Failed(reason) => Some(reason.to_string()),
         FaceGeometry::Surface(_) => None,
     };
     faces.filter_map(|face| reason(&face.geometry)).collect()

@@ -6,10 +6,10 @@ use chordal_read::{read_bytes, read_file};
 use proptest::prelude::*;
 use std::path::PathBuf;
 
-fn failures(model: &Model) -> Vec<&str> {
+fn failures(model: &Model) -> Vec<String> {
     let faces = model.parts.iter().flat_map(|part| &part.faces);
     let failed = faces.filter_map(|face| match &face.geometry {
-        FaceGeometry::Failed(reason) => Some(reason.as_str()),
+        FaceGeometry::Failed(reason) => Some(reason.to_string()),
         FaceGeometry::Surface(_) => None,
     });
     failed.collect()
@@ -115,33 +115,27 @@ fn other_files_are_not_read_and_commands_not_run() {
     let text = square(&format!("call other.obj\ncsh touch {}\ncsh -touch {0}", folder.display()), "");
     let model = model(&text);
     assert!(!folder.exists());
-    let said: Vec<_> = model.warnings.iter().map(|w| (w.message.as_str(), w.lost)).collect();
-    assert_eq!(
-        said,
-        [
-            ("1 call statements: other files are not read", true),
-            ("2 csh statements: commands are never run", false)
-        ]
-    );
+    let said: Vec<_> = model.issues.iter().map(|w| (w.kind.code(), w.is_error())).collect();
+    assert_eq!(said, [("other-file", true), ("program-ignored", false)]);
 }
 
 #[test]
 fn what_is_wrong_is_said() {
     let whole = square("", "trim 0 4 1");
     for (from, to, phrase) in [
-        ("trim 0 4 1", "trim 0 4 7", "uses curve 7, and there are 1"),
-        ("trim 0 4 1", "trim 0 4", "not a list of ranges and curves"),
-        ("trim 0 4 1", "trim 9 9 1", "uses curve 1 over 9..9"),
-        ("1 2 3 4\nparm u 0 1\n", "1 2 3 9\nparm u 0 1\n", "refers to v 9"),
-        ("1 2 3 4\nparm u 0 1\n", "1 2 3\nparm u 0 1\n", "3 control points where its parameters need 2 × 2"),
-        ("surf 0 1 0 1", "surf 0 1 0 x", "range is not four numbers"),
-        ("surf 0 1 0 1", "surf 2 3 0 1", "spans none of its domain"),
-        ("parm v 0 1", "parm v 1 0", "parameter 1 is followed by 0"),
-        ("deg 1 1", "deg 1 0", "degree 0"),
+        ("trim 0 4 1", "trim 0 4 7", "trim curve 7 does not exist"),
+        ("trim 0 4 1", "trim 0 4", "no list of ranges and curves"),
+        ("trim 0 4 1", "trim 9 9 1", "trim curve 1: parameter range 9..9 is empty"),
+        ("1 2 3 4\nparm u 0 1\n", "1 2 3 9\nparm u 0 1\n", "v 9 is not defined"),
+        ("1 2 3 4\nparm u 0 1\n", "1 2 3\nparm u 0 1\n", "number of control points is 3, expected 4"),
+        ("surf 0 1 0 1", "surf 0 1 0 x", "no parameter range of four numbers"),
+        ("surf 0 1 0 1", "surf 2 3 0 1", "outside of the domain"),
+        ("parm v 0 1", "parm v 1 0", "parameter range 1..0 is empty"),
+        ("deg 1 1", "deg 1 0", "degree 0 is"),
         ("deg 1 1", "cstype spline", "no cstype"),
-        ("deg 1 1", "cstype bspline", "too few"),
-        ("v 10 10 5", "v 10 inf 5", "refers to v 4"),
-        ("vp .8 .8", "vp .8 zero", "refers to vp 3"),
+        ("deg 1 1", "cstype bspline", "number of parameters"),
+        ("v 10 10 5", "v 10 inf 5", "v 4 is not defined"),
+        ("vp .8 .8", "vp .8 zero", "vp 3 is not defined"),
     ] {
         let broken = whole.replacen(from, to, 1);
         assert_ne!(broken, whole, "{from}");
@@ -150,7 +144,7 @@ fn what_is_wrong_is_said() {
         assert!(said.len() == 1 && said[0].contains(phrase), "{from} → {to}: {said:?}");
     }
     let said = read_bytes(b"v 0 0 0\nf 1 2 3\n", "part").expect_err("nothing in it").to_string();
-    assert!(said.contains("line 2") && said.contains("vertex that is not there"), "{said}");
+    assert!(said.contains("line 2") && said.contains("1 polygon with missing corners"), "{said}");
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn every_face_of_real_archives_arrives() {
         if found < solids {
             wrong.push(format!("{name}: {found} solids, expected {solids}"));
         }
-        let lost: Vec<_> = model.warnings.iter().filter(|warning| warning.lost).collect();
+        let lost: Vec<_> = model.issues.iter().filter(|issue| issue.is_error()).collect();
         if !lost.is_empty() {
             wrong.push(format!("{name}: {lost:?}"));
         }

@@ -68,7 +68,7 @@ fn every_surface_arrives_or_is_refused_for_a_reason() {
         assert_eq!(model.placed_faces(), *faces, "{name}");
         let sound = |part: &Part| part.faces.iter().all(|f| matches!(f.geometry, FaceGeometry::Surface(_)));
         assert!(model.parts.iter().all(sound), "{name}");
-        assert!(model.warnings.iter().all(|w| !w.lost), "{name}: {:?}", model.warnings);
+        assert!(model.issues.iter().all(|w| !w.is_error()), "{name}: {:?}", model.issues);
     }
     for (name, reason) in REFUSED {
         let error = chordal_read::read_file(folder.join(name)).expect_err("nothing in it").to_string();

@@ -21,10 +21,10 @@ fn model(kind: &str, suffix: &str, name: &str) -> Model {
     read_file(corpus(kind).join(format!("{name}.{suffix}"))).expect("a corpus file is readable")
 }
 
-fn failures(model: &Model) -> Vec<&str> {
+fn failures(model: &Model) -> Vec<String> {
     let faces = model.parts.iter().flat_map(|part| &part.faces);
     let failed = faces.filter_map(|face| match &face.geometry {
-        FaceGeometry::Failed(reason) => Some(reason.as_str()),
+        FaceGeometry::Failed(reason) => Some(reason.to_string()),
         FaceGeometry::Surface(_) => None,
     });
     failed.collect()
@@ -44,9 +44,9 @@ fn every_file_has_the_faces_of_its_index() {
                 .sum();
             let found = (model.placed_faces().to_string(), solids.to_string());
             let failed = failures(&model);
-            let said = !model.warnings.is_empty();
+            let said = !model.issues.is_empty();
             if found != (row[2].clone(), row[3].clone()) || !failed.is_empty() || said {
-                let warnings = &model.warnings;
+                let warnings = &model.issues;
                 wrong.push(format!("{kind} {}: faces and solids {found:?}; {failed:?} {warnings:?}", row[0]));
             }
             sound(&model);
@@ -66,8 +66,8 @@ fn broken_files_end_in_a_sentence_or_are_saved() {
                 Ok(_) if exits == "2" => "READ AS IF NOTHING WERE WRONG".to_owned(),
                 Err(error) => error.to_string(),
                 Ok(model) => {
-                    let warned = model.warnings.iter().map(ToString::to_string);
-                    let failed = failures(&model).into_iter().map(str::to_owned);
+                    let warned = model.issues.iter().map(ToString::to_string);
+                    let failed = failures(&model).into_iter();
                     warned.chain(failed).collect::<Vec<_>>().join("\n")
                 }
             };

@@ -4,7 +4,9 @@ use crate::border::Borders;
 use crate::cluster::{Clusters, Corner};
 use crate::cut::Pieces;
 use crate::pair::Joint;
-use chordal_brep::{Coedge, Edge, EdgeId, FaceGeometry, Loop, Part, Pcurve, Vertex, VertexId};
+use chordal_brep::{
+    Coedge, Edge, EdgeId, FaceGeometry, Issue, Loop, MeshIssue, Part, Pcurve, Vertex, VertexId,
+};
 use chordal_nurbs::{Range, Surface};
 
 /// Places at which a parameter curve is compared with the edge that it is to follow.
@@ -175,8 +177,7 @@ impl Faces<'_> {
         new.loops = face.loops.iter().filter_map(|l| self.one_loop(l, surface)).collect();
         let has_edges = new.loops.iter().any(|l| matches!(l, Loop::Edges { .. }));
         if had_edges && !has_edges {
-            new.geometry =
-                FaceGeometry::Failed("all of it lies within the merge tolerance of one point".into());
+            new.geometry = FaceGeometry::Failed(Issue::error(face.source, MeshIssue::NoArea));
         }
         new
     }

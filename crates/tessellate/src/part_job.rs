@@ -76,7 +76,7 @@ impl<'a> PartJob<'a> {
 
 fn unusable(face: &Face) -> Option<MeshIssue> {
     match &face.geometry {
-        FaceGeometry::Failed(reason) => Some(MeshIssue::NotRead { reason: reason.clone() }),
+        FaceGeometry::Failed(issue) => Some(MeshIssue::NotRead { reason: issue.about(face.source) }),
         FaceGeometry::Surface(_) => None,
     }
 }

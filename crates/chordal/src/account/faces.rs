@@ -4,7 +4,7 @@ use super::Entry;
 use crate::names::face_kind;
 use crate::placement::PartUse;
 use crate::report::*;
-use chordal_brep::{Face, FaceGeometry, Issue, IssueKind, ReadIssue, ResultIssue, Severity};
+use chordal_brep::{Face, Issue, IssueKind, ResultIssue, Severity};
 use chordal_tessellate::FaceReport;
 
 /// Adds every face of a part. `rounding`: how far placing and writing may move a vertex, in millimetres.
@@ -87,8 +87,8 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
 
 /// What became of a face, and why it has no triangles.
 fn outcome(face: &Face, of_face: &FaceReport) -> (FaceStatus, Option<(Severity, IssueKind)>) {
-    if let FaceGeometry::Failed(reason) = &face.geometry {
-        return (FaceStatus::Failed, Some((Severity::Error, ReadIssue::Other(reason.clone()).into())));
+    if let Some(issue) = face.failure() {
+        return (FaceStatus::Failed, Some((Severity::Error, issue.for_owner(face.source).kind)));
     }
     match &of_face.failed {
         Some(issue) => (FaceStatus::Failed, Some((Severity::Error, issue.clone().into()))),

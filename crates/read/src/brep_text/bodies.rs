@@ -3,7 +3,7 @@
 use super::builder::Builder;
 use super::locations::{Loc, NOWHERE};
 use super::shapes::{Ix, Kind, Orientation};
-use chordal_brep::{Body, BodyKind, FaceId, LooseItem, LooseKind, Shell, ShellId, Source};
+use chordal_brep::{Body, BodyKind, FaceId, LooseItem, LooseKind, ReadIssue, Shell, ShellId, Source};
 
 impl Builder<'_> {
     /// Adds what a record is; the faces that belong to no shell are handed back.
@@ -39,7 +39,8 @@ impl Builder<'_> {
         for sub in shape.subs {
             let is_shell = self.shape(sub.shape).is_ok_and(|shape| shape.kind == Kind::Shell);
             if !is_shell || sub.orientation == Orientation::Aside {
-                let what = "something within a solid that does not bound it is left out";
+                let what =
+                    ReadIssue::Unsupported { what: "a shape inside a solid that does not bound it".into() };
                 self.doc.notes.warn(self.doc.source(sub.shape), what);
                 continue;
             }
@@ -48,7 +49,10 @@ impl Builder<'_> {
                     let flipped = reversed != (sub.orientation == Orientation::Reversed);
                     shells.push(self.shell(sub.shape, at, flipped, true));
                 }
-                Err(why) => self.doc.notes.lose(source, format!("solid: a shell is left out: {why}")),
+                Err(why) => self
+                    .doc
+                    .notes
+                    .lose(source, ReadIssue::ShellIgnored { what: "shell of a solid", cause: why.boxed() }),
             }
         }
         self.body(BodyKind::Solid, shells, source);
@@ -59,7 +63,7 @@ impl Builder<'_> {
         let mut faces = Vec::new();
         for sub in self.shape(ix).map(|shape| shape.subs).unwrap_or_default() {
             if !self.spend() {
-                self.doc.notes.lose(source, "shell: too many uses of shapes lead here");
+                self.doc.notes.lose(source, ReadIssue::TooManyReferences);
                 break;
             }
             match self.within(loc, sub.location) {
@@ -67,7 +71,10 @@ impl Builder<'_> {
                     let flipped = reversed != (sub.orientation == Orientation::Reversed);
                     faces.extend(self.face(sub.shape, at, flipped));
                 }
-                Err(why) => self.doc.notes.lose(source, format!("shell: a face is left out: {why}")),
+                Err(why) => self
+                    .doc
+                    .notes
+                    .lose(source, ReadIssue::ShellIgnored { what: "face of a shell", cause: why.boxed() }),
             }
         }
         self.push_shell(faces, closed, source)

@@ -3,8 +3,8 @@
 use super::document::{Document, numbered};
 use super::locations::{Loc, NOWHERE};
 use super::shapes::{Ix, Kind, Shape};
-use crate::build::PartBuilder;
-use chordal_brep::{EdgeId, Pcurve, VertexId};
+use crate::assemble::PartBuilder;
+use chordal_brep::{EdgeId, Pcurve, ReadIssue, VertexId};
 use chordal_nurbs::{Curve, Curve2, DVec2, Range, Surface, UvBox};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -25,9 +25,9 @@ pub(crate) struct PlacedPatch {
 pub(crate) struct Builder<'d> {
     pub doc: &'d mut Document,
     pub build: PartBuilder,
-    vertices: FxHashMap<(Ix, Loc), Result<VertexId, String>>,
-    pub edges: FxHashMap<(Ix, Loc), Result<EdgeId, String>>,
-    patches: FxHashMap<(i64, Loc), Result<PlacedPatch, String>>,
+    vertices: FxHashMap<(Ix, Loc), Result<VertexId, ReadIssue>>,
+    pub edges: FxHashMap<(Ix, Loc), Result<EdgeId, ReadIssue>>,
+    patches: FxHashMap<(i64, Loc), Result<PlacedPatch, ReadIssue>>,
     /// Uses of shapes that may still be followed: it bounds the work on files whose shapes use each other in ever
     /// new places. An honest file needs about one for each use it states.
     pub budget: usize,
@@ -53,18 +53,18 @@ impl<'d> Builder<'d> {
         self.budget > 0
     }
 
-    pub(crate) fn shape(&self, ix: Ix) -> Result<Shape, String> {
+    pub(crate) fn shape(&self, ix: Ix) -> Result<Shape, ReadIssue> {
         self.doc.shapes[ix].clone()
     }
 
     /// The location of a use within a location.
-    pub(crate) fn within(&mut self, outer: Loc, number: i64) -> Result<Loc, String> {
+    pub(crate) fn within(&mut self, outer: Loc, number: i64) -> Result<Loc, ReadIssue> {
         let inner = self.doc.locations.of_file(number);
-        let inner = inner.ok_or_else(|| format!("there is no location {number}"))?;
+        let inner = inner.ok_or_else(|| ReadIssue::NotFound { what: "location", number })?;
         Ok(self.doc.locations.compose(outer, inner))
     }
 
-    pub(crate) fn vertex(&mut self, ix: Ix, loc: Loc) -> Result<VertexId, String> {
+    pub(crate) fn vertex(&mut self, ix: Ix, loc: Loc) -> Result<VertexId, ReadIssue> {
         if let Some(known) = self.vertices.get(&(ix, loc)) {
             return known.clone();
         }
@@ -73,12 +73,12 @@ impl<'d> Builder<'d> {
         made
     }
 
-    fn new_vertex(&mut self, ix: Ix, loc: Loc) -> Result<VertexId, String> {
+    fn new_vertex(&mut self, ix: Ix, loc: Loc) -> Result<VertexId, ReadIssue> {
         let Kind::Vertex { point, tolerance } = self.shape(ix)?.kind else {
-            return Err("an end of an edge is no vertex".to_owned());
+            return Err(ReadIssue::UnknownKind { found: "an end of the edge".into(), expected: "a vertex" });
         };
         if !point.is_finite() {
-            return Err("a vertex is at no finite place".to_owned());
+            return Err(ReadIssue::NotFinite { what: "vertex" });
         }
         self.note_tolerance(tolerance, loc);
         let source = self.doc.source(ix);
@@ -96,7 +96,7 @@ impl<'d> Builder<'d> {
     }
 
     /// A surface of the file at a place.
-    pub(crate) fn patch(&mut self, number: i64, loc: Loc) -> Result<PlacedPatch, String> {
+    pub(crate) fn patch(&mut self, number: i64, loc: Loc) -> Result<PlacedPatch, ReadIssue> {
         if let Some(known) = self.patches.get(&(number, loc)) {
             return known.clone();
         }
@@ -105,7 +105,7 @@ impl<'d> Builder<'d> {
         made
     }
 
-    fn new_patch(&self, number: i64, loc: Loc) -> Result<PlacedPatch, String> {
+    fn new_patch(&self, number: i64, loc: Loc) -> Result<PlacedPatch, ReadIssue> {
         let patch = numbered(&self.doc.surfaces, number, "surface")?;
         if loc == NOWHERE {
             return Ok(PlacedPatch {
@@ -116,7 +116,7 @@ impl<'d> Builder<'d> {
             });
         }
         let moved = patch.surface.transformed(&self.doc.locations.matrix(loc));
-        let moved = moved.ok_or_else(|| format!("surface {number} cannot be moved by its location"))?;
+        let moved = moved.ok_or_else(|| ReadIssue::NotTransformable { what: "surface" })?;
         let by = moved.factors();
         let trims = patch.trims.map(|b| UvBox::from_points([b.min * by, b.max * by]));
         Ok(PlacedPatch {
@@ -128,25 +128,24 @@ impl<'d> Builder<'d> {
     }
 
     /// A curve of the file at a place.
-    pub(crate) fn curve(&self, number: i64, loc: Loc) -> Result<Curve, String> {
+    pub(crate) fn curve(&self, number: i64, loc: Loc) -> Result<Curve, ReadIssue> {
         let curve = &numbered(&self.doc.curves, number, "curve")?.curve;
         if loc == NOWHERE {
             return Ok(curve.clone());
         }
         let moved = curve.transformed(&self.doc.locations.matrix(loc));
-        moved.ok_or_else(|| format!("curve {number} cannot be moved by its location"))
+        moved.ok_or_else(|| ReadIssue::NotTransformable { what: "curve" })
     }
 
     /// A curve of the file in parameter space, in the parameters of a patch.
-    pub(crate) fn pcurve(&self, number: i64, range: Range, patch: &PlacedPatch) -> Result<Pcurve, String> {
+    pub(crate) fn pcurve(&self, number: i64, range: Range, patch: &PlacedPatch) -> Result<Pcurve, ReadIssue> {
         let bounded = numbered(&self.doc.curves2, number, "curve in parameter space")?;
         let range = if range.is_finite() && range.start < range.end { range } else { bounded.range };
         if !range.is_finite() || range.start >= range.end {
-            return Err(format!("the curve {number} in parameter space has no range"));
+            return Err(ReadIssue::CurveUnbounded.within("curve in parameter space", number as usize));
         }
-        let curve = scaled(&bounded.curve, range, patch.factors).ok_or_else(|| {
-            format!("the curve {number} in parameter space cannot be brought to the surface")
-        })?;
+        let curve = scaled(&bounded.curve, range, patch.factors)
+            .ok_or_else(|| ReadIssue::NotTransformable { what: "curve in parameter space" })?;
         Ok(Pcurve { curve: Arc::new(curve), range })
     }
 }

@@ -1,11 +1,12 @@
 //! Curves in space and in parameter space.
 
 use super::tokens::{Stop, Tokens};
-use crate::build::{expanded_knots, replace_zero_weights, unrolled};
+use crate::assemble::{expanded_knots, replace_zero_weights, unrolled};
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{Curve, Curve2, DVec2, DVec3, Frame, Frame2, NurbsCurve, Range, Vector};
 
 /// Read, but perhaps no curve; or the text cannot be followed.
-pub(crate) type Parsed<T> = Result<Result<T, String>, Stop>;
+pub(crate) type Parsed<T> = Result<Result<T, ReadIssue>, Stop>;
 
 /// Curves made of curves, deeper than this, are no file's.
 pub(crate) const MAX_DEPTH: u32 = 16;
@@ -66,7 +67,7 @@ pub(crate) fn curve(tokens: &mut Tokens<'_>, depth: u32) -> Parsed<Bounded<Curve
                 Some(reference) if distance.is_finite() => {
                     Ok(Curve::Offset { basis: Box::new(basis.curve), distance, reference })
                 }
-                _ => Err("an offset without a direction".to_owned()),
+                _ => Err(ReadIssue::ZeroVector { what: "direction of the offset" }),
             })
         }
         _ => return Err(tokens.stop("the kind of a curve")),
@@ -124,7 +125,7 @@ fn trimmed<C>(basis: Bounded<C>, range: Range) -> Bounded<C> {
 }
 
 /// Centre, normal, x and y of a conic. The normal may be on the other side: x and y say which way it runs.
-fn curve_frame(tokens: &mut Tokens<'_>) -> Result<Result<Frame, String>, Stop> {
+fn curve_frame(tokens: &mut Tokens<'_>) -> Result<Result<Frame, ReadIssue>, Stop> {
     let [origin, z, x, y] = [point(tokens)?, point(tokens)?, point(tokens)?, point(tokens)?];
     Ok(finite([origin, z, x, y]).map(|()| {
         let z = if x.cross(y).dot(z) < 0.0 { -z } else { z };
@@ -132,23 +133,27 @@ fn curve_frame(tokens: &mut Tokens<'_>) -> Result<Result<Frame, String>, Stop> {
     }))
 }
 
-fn curve_frame2(tokens: &mut Tokens<'_>) -> Result<Result<Frame2, String>, Stop> {
+fn curve_frame2(tokens: &mut Tokens<'_>) -> Result<Result<Frame2, ReadIssue>, Stop> {
     let [origin, x, y] = [point2(tokens)?, point2(tokens)?, point2(tokens)?];
     let sound = origin.is_finite() && x.is_finite() && y.is_finite();
     Ok(sound.then(|| Frame2 { y: y.normalize_or(x.perp()), ..Frame2::new(origin, x) }).ok_or_else(not_finite))
 }
 
-fn not_finite() -> String {
-    "a coordinate is not a number".to_owned()
+fn not_finite() -> ReadIssue {
+    ReadIssue::NotFinite { what: "coordinate" }
 }
 
-pub(crate) fn finite<const N: usize>(points: [DVec3; N]) -> Result<(), String> {
+pub(crate) fn finite<const N: usize>(points: [DVec3; N]) -> Result<(), ReadIssue> {
     if points.iter().all(|p| p.is_finite()) { Ok(()) } else { Err(not_finite()) }
 }
 
 /// A radius or semi-axis.
-pub(crate) fn size(value: f64) -> Result<f64, String> {
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err(format!("a radius is {value}")) }
+pub(crate) fn size(value: f64) -> Result<f64, ReadIssue> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(ReadIssue::BadValue { what: "radius", value: Real(value) })
+    }
 }
 
 /// Control points with their weights, as many as `count` says.
@@ -192,7 +197,7 @@ fn bezier<V: Vector>(
 ) -> Parsed<NurbsCurve<V>> {
     let (rational, degree) = (tokens.flag()?, tokens.count()?);
     let (points, weights) = poles(tokens, degree.saturating_add(1), rational, read)?;
-    Ok(NurbsCurve::new(degree, bezier_knots(degree), points, weights).map_err(|error| error.to_string()))
+    Ok(NurbsCurve::new(degree, bezier_knots(degree), points, weights).map_err(ReadIssue::from))
 }
 
 fn bspline<V: Vector>(
@@ -206,7 +211,7 @@ fn bspline<V: Vector>(
     Ok(knot_vector(&values, &multiplicities, degree, count, periodic).and_then(|(knots, repeated)| {
         let points = (0..repeated).map(|i| points[i % count]).collect();
         let weights = weights.map(|w| (0..repeated).map(|i| w[i % count]).collect());
-        NurbsCurve::new(degree, knots, points, weights).map_err(|error| error.to_string())
+        NurbsCurve::new(degree, knots, points, weights).map_err(ReadIssue::from)
     }))
 }
 
@@ -217,9 +222,13 @@ pub(crate) fn knot_vector(
     degree: usize,
     count: usize,
     periodic: bool,
-) -> Result<(Vec<f64>, usize), String> {
+) -> Result<(Vec<f64>, usize), ReadIssue> {
     if degree == 0 || degree > 100 || count == 0 {
-        return Err(format!("a spline of degree {degree} with {count} control points"));
+        return Err(ReadIssue::TooFew {
+            what: "control points",
+            found: count,
+            least: degree.saturating_add(1).max(2),
+        });
     }
     if periodic {
         return unrolled(values, multiplicities, degree, count);

@@ -7,12 +7,12 @@ use super::shapes::{Ix, Orientation, Shape, Sub, reference, shape};
 use super::surfaces::{Patch, surface};
 use super::tokens::{Stop, Tokens};
 use super::triangulations::{Triangulation, triangulation};
-use crate::build::Notes;
-use chordal_brep::Source;
+use crate::assemble::Notes;
+use chordal_brep::{ReadIssue, Source};
 use chordal_nurbs::{Curve, Curve2};
 
 /// A table of the file, numbered from 1.
-pub(crate) type Table<T> = Vec<Result<T, String>>;
+pub(crate) type Table<T> = Vec<Result<T, ReadIssue>>;
 
 /// Everything in the file, not yet put together.
 #[derive(Debug)]
@@ -54,12 +54,16 @@ impl Document {
 }
 
 /// An entry of a table by its number; a sentence where there is none.
-pub(crate) fn numbered<'t, T>(table: &'t Table<T>, number: i64, what: &str) -> Result<&'t T, String> {
+pub(crate) fn numbered<'t, T>(
+    table: &'t Table<T>,
+    number: i64,
+    what: &'static str,
+) -> Result<&'t T, ReadIssue> {
     let found = usize::try_from(number).ok().and_then(|n| table.get(n.checked_sub(1)?));
     match found {
         Some(Ok(item)) => Ok(item),
-        Some(Err(message)) => Err(format!("its {what} {number} is unusable: {message}")),
-        None => Err(format!("there is no {what} {number}")),
+        Some(Err(issue)) => Err(issue.clone().within(what, usize::try_from(number).unwrap_or(0))),
+        None => Err(ReadIssue::NotFound { what, number }),
     }
 }
 
@@ -70,14 +74,14 @@ fn at_line(line: u32) -> Source {
 /// The items of one section.
 fn section<T>(
     tokens: &mut Tokens<'_>,
-    keyword: &str,
+    keyword: &'static str,
     notes: &Notes,
     mut read: impl FnMut(&mut Tokens<'_>) -> Parsed<T>,
 ) -> Table<T> {
     let mut table = Table::new();
     if !tokens.seek(keyword) {
         let line = tokens.line();
-        notes.warn(at_line(line), format!("the section {keyword} is missing"));
+        notes.warn(at_line(line), ReadIssue::SectionMissing { section: keyword });
         return table;
     }
     tokens.word();
@@ -87,9 +91,10 @@ fn section<T>(
         }
         Ok(())
     });
-    if let Err(Stop { line, message }) = stopped {
+    if let Err(Stop { line, issue }) = stopped {
         let item = table.len() + 1;
-        notes.warn(at_line(line), format!("the section {keyword} breaks off at its item {item}: {message}"));
+        let cause = issue.boxed();
+        notes.warn(at_line(line), ReadIssue::SectionTruncated { section: keyword, item, cause });
     }
     table
 }
@@ -107,7 +112,7 @@ fn topology(tokens: &mut Tokens<'_>, version: u32, notes: &Notes) -> (Table<Shap
             let read = shape(tokens, version, shapes.len(), declared)?;
             if let Ok(Shape { line, problem: Some(problem), .. }) = &read {
                 let entity = (declared - shapes.len()) as u64;
-                notes.lose(Source { entity, line: *line }, format!("a shape {problem}; left out"));
+                notes.lose(Source { entity, line: *line }, problem.clone());
             }
             shapes.push(read);
         }
@@ -120,12 +125,14 @@ fn topology(tokens: &mut Tokens<'_>, version: u32, notes: &Notes) -> (Table<Shap
             found.map(|shape| Sub { shape, orientation, location })
         }
         Ok(None) => None,
-        Err(Stop { line, message }) => {
-            let what = match declared - shapes.len() {
-                0 => format!("the shape that the file is about is not named: {message}"),
-                left => format!("the last {left} of {declared} shapes are missing: {message}"),
+        Err(Stop { line, issue }) => {
+            let missing = declared - shapes.len();
+            let cause = issue.boxed();
+            let issue = match missing {
+                0 => ReadIssue::Damaged { what: "the reference to the root shape", cause },
+                _ => ReadIssue::ItemsMissing { what: "shapes", missing, declared, cause },
             };
-            notes.lose(at_line(line), what);
+            notes.lose(at_line(line), issue);
             None
         }
     };

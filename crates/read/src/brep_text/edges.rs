@@ -3,7 +3,7 @@
 use super::builder::Builder;
 use super::locations::Loc;
 use super::shapes::{EdgeData, Ix, Kind, Orientation, Shape};
-use chordal_brep::{Edge, EdgeId, Source, VertexId};
+use chordal_brep::{Edge, EdgeId, Issue, ReadIssue, Real, Source, VertexId};
 use chordal_nurbs::{Curve, Range};
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ const SAME_END: f64 = 1e-9;
 
 impl Builder<'_> {
     /// The edge of a record at a place, built once.
-    pub(crate) fn edge(&mut self, ix: Ix, loc: Loc) -> Result<EdgeId, String> {
+    pub(crate) fn edge(&mut self, ix: Ix, loc: Loc) -> Result<EdgeId, ReadIssue> {
         if let Some(known) = self.edges.get(&(ix, loc)) {
             return known.clone();
         }
@@ -21,9 +21,11 @@ impl Builder<'_> {
         made
     }
 
-    fn new_edge(&mut self, ix: Ix, loc: Loc) -> Result<EdgeId, String> {
+    fn new_edge(&mut self, ix: Ix, loc: Loc) -> Result<EdgeId, ReadIssue> {
         let shape = self.shape(ix)?;
-        let Kind::Edge(data) = &shape.kind else { return Err("a wire uses what is no edge".to_owned()) };
+        let Kind::Edge(data) = &shape.kind else {
+            return Err(ReadIssue::UnknownKind { found: "a shape of the wire".into(), expected: "an edge" });
+        };
         let source = self.doc.source(ix);
         self.note_tolerance(data.tolerance, loc);
         let ends = self.end_vertices(&shape, loc)?;
@@ -32,7 +34,7 @@ impl Builder<'_> {
         }
         let (curve, range) = match self.curve_of_edge(data, loc) {
             Ok(found) => found,
-            Err(why) => return self.substitute(ends, source, &why),
+            Err(why) => return self.substitute(ends, source, why),
         };
         let [start, end] = match ends {
             [Some(start), Some(end)] => [start, end],
@@ -43,7 +45,7 @@ impl Builder<'_> {
     }
 
     /// The vertices where the edge starts and ends.
-    fn end_vertices(&mut self, shape: &Shape, loc: Loc) -> Result<[Option<VertexId>; 2], String> {
+    fn end_vertices(&mut self, shape: &Shape, loc: Loc) -> Result<[Option<VertexId>; 2], ReadIssue> {
         let mut ends = [None; 2];
         for sub in &shape.subs {
             let end = match sub.orientation {
@@ -58,22 +60,22 @@ impl Builder<'_> {
     }
 
     /// An edge that is a single point: a pole, an apex.
-    fn point_edge(&mut self, ends: [Option<VertexId>; 2], source: Source) -> Result<EdgeId, String> {
-        let vertex = ends[0].or(ends[1]).ok_or_else(|| format!("edge {source} has no vertex"))?;
+    fn point_edge(&mut self, ends: [Option<VertexId>; 2], source: Source) -> Result<EdgeId, ReadIssue> {
+        let vertex = ends[0].or(ends[1]).ok_or_else(|| ReadIssue::Missing { what: "vertex of the edge" })?;
         self.build.merge(vertex, ends[1].unwrap_or(vertex));
         let range = Range::new(0.0, 1.0);
         Ok(self.build.push_edge(Edge { curve: None, range, start: vertex, end: vertex, source }))
     }
 
     /// The edge's curve in space, else its curve on a surface.
-    fn curve_of_edge(&mut self, data: &EdgeData, loc: Loc) -> Result<(Curve, Range), String> {
+    fn curve_of_edge(&mut self, data: &EdgeData, loc: Loc) -> Result<(Curve, Range), ReadIssue> {
         let sound = |range: Range| range.is_finite() && range.start < range.end;
-        let mut problem = "it has no curve".to_owned();
+        let mut problem = ReadIssue::Missing { what: "curve" };
         if let Some((number, location, range)) = data.curve {
             let at = self.within(loc, location)?;
             match self.curve(number, at) {
                 Ok(curve) if sound(range) => return Ok((curve, range)),
-                Ok(_) => problem = format!("its range {}..{} is empty", range.start, range.end),
+                Ok(_) => problem = ReadIssue::EmptyRange { start: Real(range.start), end: Real(range.end) },
                 Err(why) => problem = why,
             }
         }
@@ -93,10 +95,11 @@ impl Builder<'_> {
         &mut self,
         ends: [Option<VertexId>; 2],
         source: Source,
-        why: &str,
-    ) -> Result<EdgeId, String> {
-        let [Some(start), Some(end)] = ends else { return Err(format!("edge {source}: {why}")) };
-        self.doc.notes.warn(source, format!("the edge is taken for a straight line: {why}"));
+        why: ReadIssue,
+    ) -> Result<EdgeId, ReadIssue> {
+        let [Some(start), Some(end)] = ends else { return Err(why) };
+        let cause = Box::new(Issue::error(Source::default(), why));
+        self.doc.notes.warn(source, ReadIssue::EdgeStraightened { cause });
         Ok(self.build.straight_edge(start, end, source))
     }
 
@@ -107,10 +110,10 @@ impl Builder<'_> {
         curve: &Curve,
         range: Range,
         source: Source,
-    ) -> Result<[VertexId; 2], String> {
+    ) -> Result<[VertexId; 2], ReadIssue> {
         let points = [range.start, range.end].map(|t| curve.point(t));
         if !points.iter().all(|p| p.is_finite()) {
-            return Err(format!("edge {source} has no ends"));
+            return Err(ReadIssue::Missing { what: "ends of the edge" });
         }
         let middle = curve.point((range.start + range.end) * 0.5);
         let size = points[0].distance(middle) + points[1].distance(middle);

@@ -3,9 +3,11 @@
 use super::builder::{Builder, PlacedPatch};
 use super::locations::Loc;
 use super::shapes::{EdgeData, FaceData, Ix, Kind, Orientation, Shape};
-use crate::build::{Chained, chained};
+use crate::assemble::{Chained, chained};
 use crate::trimmed::{self, Look, Piece, Role, TrimLoop};
-use chordal_brep::{Coedge, Edge, Face, FaceGeometry, FaceId, Loop, Pcurve, TessellatedItem, VertexId};
+use chordal_brep::{
+    Coedge, Edge, Face, FaceGeometry, FaceId, Loop, Millimetres, Pcurve, ReadIssue, TessellatedItem, VertexId,
+};
 use chordal_nurbs::{DVec2, UvBox};
 
 /// The vertices of one loop are within this many times the file's tolerance of where its edges end.
@@ -19,15 +21,16 @@ impl Builder<'_> {
         match self.read_face(ix, loc, &look) {
             Ok(faces) => faces,
             Err(why) => {
-                let reason = format!("{} face: {why}", look.source);
-                vec![trimmed::add_failed(&mut self.build.part, reason, &look)]
+                vec![trimmed::add_failed(&mut self.build.part, why, &look)]
             }
         }
     }
 
-    fn read_face(&mut self, ix: Ix, loc: Loc, look: &Look) -> Result<Vec<FaceId>, String> {
+    fn read_face(&mut self, ix: Ix, loc: Loc, look: &Look) -> Result<Vec<FaceId>, ReadIssue> {
         let shape = self.shape(ix)?;
-        let Kind::Face(data) = &shape.kind else { return Err("is not a face".to_owned()) };
+        let Kind::Face(data) = &shape.kind else {
+            return Err(ReadIssue::UnknownKind { found: "the shape".into(), expected: "a face" });
+        };
         let at = self.within(loc, data.location)?;
         if data.surface == 0 {
             return self.triangles(data, at, look);
@@ -62,7 +65,7 @@ impl Builder<'_> {
         loc: Loc,
         surface_at: Loc,
         patch: &PlacedPatch,
-    ) -> Result<Vec<Vec<Coedge>>, String> {
+    ) -> Result<Vec<Vec<Coedge>>, ReadIssue> {
         let mut wires = Vec::new();
         for wire in &shape.subs {
             let record = self.shape(wire.shape)?;
@@ -78,7 +81,7 @@ impl Builder<'_> {
                     continue;
                 }
                 if !self.spend() {
-                    return Err("too many uses of shapes lead here".to_owned());
+                    return Err(ReadIssue::TooManyReferences);
                 }
                 let edge_at = self.within(at, sub.location)?;
                 let edge = self.edge(sub.shape, edge_at)?;
@@ -125,7 +128,7 @@ impl Builder<'_> {
     }
 
     /// The loops that the edges of one wire make.
-    fn loops(&mut self, coedges: Vec<Coedge>, look: &Look) -> Result<Vec<Loop>, String> {
+    fn loops(&mut self, coedges: Vec<Coedge>, look: &Look) -> Result<Vec<Loop>, ReadIssue> {
         let part = &self.build.part;
         let Chained { mut closed, open, sorted } =
             chained(coedges, |c| ends(&part.edges, c), |a, b| jump(a, b).unwrap_or(f64::INFINITY));
@@ -135,36 +138,32 @@ impl Builder<'_> {
             let mut joined: Vec<Coedge> = open.into_iter().flatten().collect();
             let gap = self.build.close(&mut joined, stated, look.source);
             if gap > 0.0 {
-                let what = format!("a wire is open: ends {gap:.3e} apart are joined by straight edges");
+                let what = ReadIssue::GapClosed { gap: Millimetres(gap) };
                 self.doc.notes.warn(look.source, what);
             }
             closed.push(joined);
         } else if sorted && closed.len() > 1 {
-            let what = format!("a wire of the face is {} closed loops", closed.len());
+            let what = ReadIssue::WireIsLoops { loops: closed.len() };
             self.doc.notes.warn(look.source, what);
         }
         Ok(closed.into_iter().map(|coedges| Loop::Edges { coedges, outer: false }).collect())
     }
 
     /// A face without wires: all of its surface, or the rectangle that it is trimmed to.
-    fn whole(&mut self, patch: &PlacedPatch, look: &Look) -> Result<Vec<FaceId>, String> {
+    fn whole(&mut self, patch: &PlacedPatch, look: &Look) -> Result<Vec<FaceId>, ReadIssue> {
         let trims: Vec<TrimLoop> = patch.trims.into_iter().map(|uv| rectangle(uv, look)).collect();
         if trims.is_empty() && !patch.surface.domain().is_finite() {
-            return Err("it has neither wires nor a bounded surface".to_owned());
+            return Err(ReadIssue::NoBoundary);
         }
         let look = Look { flipped: look.flipped != patch.reversed, ..look.clone() };
-        let mut warnings = Vec::new();
-        let faces = trimmed::add_faces(&mut self.build.part, &patch.surface, &trims, &look, &mut warnings);
-        for warning in warnings {
-            self.doc.notes.warn(warning.source, warning.message);
-        }
+        let faces = trimmed::add_faces(&mut self.build.part, &patch.surface, &trims, &look, &self.doc.notes);
         Ok(faces)
     }
 
     /// A face that is nothing but triangles.
-    fn triangles(&mut self, data: &FaceData, at: Loc, look: &Look) -> Result<Vec<FaceId>, String> {
+    fn triangles(&mut self, data: &FaceData, at: Loc, look: &Look) -> Result<Vec<FaceId>, ReadIssue> {
         if data.triangulation == 0 {
-            return Err("it has neither a surface nor triangles".to_owned());
+            return Err(ReadIssue::NoSurface);
         }
         let found = super::document::numbered(&self.doc.triangulations, data.triangulation, "triangulation")?;
         let by = self.doc.locations.matrix(at);

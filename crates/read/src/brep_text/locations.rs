@@ -4,7 +4,8 @@
 //! every location is kept as its list of factors, and equal lists have one number.
 
 use super::tokens::{Stop, Tokens};
-use crate::build::placement;
+use crate::assemble::placement;
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::DAffine3;
 use rustc_hash::FxHashMap;
 
@@ -104,16 +105,14 @@ impl Locations {
     ///
     /// # Errors
     /// Where the text cannot be followed.
-    pub(crate) fn read_one(&mut self, tokens: &mut Tokens<'_>) -> Result<Result<(), String>, Stop> {
+    pub(crate) fn read_one(&mut self, tokens: &mut Tokens<'_>) -> Result<Result<(), ReadIssue>, Stop> {
         let made = match tokens.integer()? {
             1 => {
                 let mut rows = [[0.0; 4]; 3];
                 for value in rows.iter_mut().flatten() {
                     *value = tokens.real()?;
                 }
-                placement(rows)
-                    .map(|matrix| self.new_elementary(matrix))
-                    .map_err(|why| format!("the location {why}"))
+                placement(rows).map(|matrix| self.new_elementary(matrix))
             }
             2 => {
                 let mut product = Ok(NOWHERE);
@@ -134,10 +133,10 @@ impl Locations {
     }
 
     /// What comes later in the list stands further out.
-    fn times(&mut self, product: Loc, number: i64, power: i64) -> Result<Loc, String> {
-        let factor = self.of_file(number).ok_or_else(|| format!("there is no location {number}"))?;
+    fn times(&mut self, product: Loc, number: i64, power: i64) -> Result<Loc, ReadIssue> {
+        let factor = self.of_file(number).ok_or_else(|| ReadIssue::NotFound { what: "location", number })?;
         if power.abs() > MOST_POWER {
-            return Err(format!("the power of a location is {power}"));
+            return Err(ReadIssue::BadValue { what: "power of a location", value: Real(power as f64) });
         }
         let factor = if power < 0 { self.inverse(factor) } else { factor };
         Ok((0..power.abs()).fold(product, |product, _| self.compose(factor, product)))

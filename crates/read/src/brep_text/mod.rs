@@ -74,7 +74,7 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
         parts: found.parts,
         nodes: found.nodes,
         roots: found.roots,
-        warnings: document.notes.take(),
+        issues: document.notes.take(),
     })
 }
 

@@ -7,7 +7,7 @@ use super::builder::Builder;
 use super::document::Document;
 use super::locations::{Loc, NOWHERE};
 use super::shapes::{Ix, Kind, Orientation, Sub};
-use chordal_brep::{Node, NodeId, Part, PartId, Source};
+use chordal_brep::{Node, NodeId, Part, PartId, ReadIssue, Source};
 use chordal_nurbs::DAffine3;
 use rustc_hash::FxHashMap;
 
@@ -88,12 +88,12 @@ fn groups(doc: &mut Document, budget: &mut usize) -> Vec<(Loc, Vec<Item>)> {
     while let Some((sub, outer, turned)) = stack.pop() {
         let source = doc.source(sub.shape);
         if *budget == 0 {
-            doc.notes.lose(source, "too many uses of shapes; the rest is left out");
+            doc.notes.lose(source, ReadIssue::TooManyReferences);
             break;
         }
         *budget -= 1;
         let Some(inner) = doc.locations.of_file(sub.location) else {
-            doc.notes.lose(source, format!("left out: there is no location {}", sub.location));
+            doc.notes.lose(source, ReadIssue::NotFound { what: "location", number: sub.location });
             continue;
         };
         let at = doc.locations.compose(outer, inner);
@@ -112,7 +112,7 @@ fn groups(doc: &mut Document, budget: &mut usize) -> Vec<(Loc, Vec<Item>)> {
                 });
                 groups[group].1.push((sub.shape, turned));
             }
-            Err(why) => doc.notes.lose(source, format!("left out: {why}")),
+            Err(why) => doc.notes.lose(source, why.clone()),
         }
     }
     groups

@@ -2,6 +2,7 @@
 
 use super::curves::point;
 use super::tokens::{Stop, Tokens};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{DVec3, Range};
 
 /// The position of a record in the file.
@@ -74,7 +75,7 @@ pub(crate) struct Shape {
     pub subs: Vec<Sub>,
     pub line: u32,
     /// What is wrong with some of what it uses, which is left out.
-    pub problem: Option<String>,
+    pub problem: Option<ReadIssue>,
 }
 
 /// Reads the record at position `ix` of `count`; it may use only records before it.
@@ -83,7 +84,7 @@ pub(crate) fn shape(
     version: u32,
     ix: Ix,
     count: usize,
-) -> Result<Result<Shape, String>, Stop> {
+) -> Result<Result<Shape, ReadIssue>, Stop> {
     let line = tokens.line();
     let kind = match tokens.word() {
         b"Ve" => vertex(tokens)?,
@@ -96,12 +97,15 @@ pub(crate) fn shape(
         b"Co" => Kind::Compound,
         word => {
             let word = String::from_utf8_lossy(&word[..word.len().min(20)]).into_owned();
-            return Err(Stop { line, message: format!("{word:?} stands where the kind of a shape belongs") });
+            return Err(Stop {
+                line,
+                issue: ReadIssue::Expected { expected: "the kind of a shape", found: word },
+            });
         }
     };
     let flags = tokens.word();
     if flags.len() != 7 || !flags.iter().all(|b| matches!(b, b'0' | b'1')) {
-        return Err(Stop { line, message: "the seven flags of a shape are missing".to_owned() });
+        return Err(Stop { line, issue: ReadIssue::Missing { what: "seven flags of the shape" } });
     }
     let closed = flags[4] == b'1';
     let mut subs = Vec::new();
@@ -111,7 +115,7 @@ pub(crate) fn shape(
         let target = usize::try_from(number).ok().and_then(|n| count.checked_sub(n)).filter(|&t| t < ix);
         match target {
             Some(shape) => subs.push(Sub { shape, orientation, location }),
-            None => bad = Some(format!("refers to shape {number}, which does not come before it")),
+            None => bad = Some(ReadIssue::NotFound { what: "earlier shape", number }),
         }
     }
     Ok(match bad {

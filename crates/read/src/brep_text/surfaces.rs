@@ -5,6 +5,7 @@
 
 use super::curves::{MAX_DEPTH, Parsed, bezier_knots, curve, finite, knot_vector, knots, point, poles};
 use super::tokens::{Stop, Tokens};
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DVec2, DVec3, Frame, NurbsSurface, Range, Surface, UvBox};
 
 /// A surface and how the file's parameters become ours.
@@ -39,7 +40,7 @@ impl Placed {
     }
 }
 
-fn placed(tokens: &mut Tokens<'_>) -> Result<Result<Placed, String>, Stop> {
+fn placed(tokens: &mut Tokens<'_>) -> Result<Result<Placed, ReadIssue>, Stop> {
     let [origin, z, x, y] = [point(tokens)?, point(tokens)?, point(tokens)?, point(tokens)?];
     Ok(finite([origin, z, x, y]).map(|()| {
         let left_handed = x.cross(y).dot(z) < 0.0;
@@ -110,14 +111,15 @@ pub(crate) fn surface(tokens: &mut Tokens<'_>, depth: u32) -> Parsed<Patch> {
 }
 
 /// A radius of a surface. Negative ones keep their sign, see [`crate::settle_surfaces`].
-fn radius_of(value: f64) -> Result<f64, String> {
-    if value.is_finite() && value != 0.0 { Ok(value) } else { Err(format!("a radius is {value}")) }
+fn radius_of(value: f64) -> Result<f64, ReadIssue> {
+    let sound = value.is_finite() && value != 0.0;
+    if sound { Ok(value) } else { Err(ReadIssue::BadValue { what: "radius", value: Real(value) }) }
 }
 
-fn cone(place: Placed, radius: f64, angle: f64) -> Result<Patch, String> {
+fn cone(place: Placed, radius: f64, angle: f64) -> Result<Patch, ReadIssue> {
     let (sine, cosine) = angle.sin_cos();
     if !angle.is_finite() || !radius.is_finite() {
-        return Err(format!("a cone has the radius {radius} and the half angle {angle}"));
+        return Err(ReadIssue::NotFinite { what: "radius or half angle" });
     }
     if sine == 0.0 {
         let radius = radius_of(radius)?;
@@ -126,9 +128,9 @@ fn cone(place: Placed, radius: f64, angle: f64) -> Result<Patch, String> {
     Ok(place.patch(cosine, |frame, side| Surface::Cone { frame, radius, half_angle: angle * side }))
 }
 
-fn revolution(profile: chordal_nurbs::Curve, axis_origin: DVec3, axis: DVec3) -> Result<Patch, String> {
+fn revolution(profile: chordal_nurbs::Curve, axis_origin: DVec3, axis: DVec3) -> Result<Patch, ReadIssue> {
     let axis = axis.try_normalize().filter(|_| axis_origin.is_finite());
-    let axis = axis.ok_or_else(|| "a surface of revolution has no axis".to_owned())?;
+    let axis = axis.ok_or_else(|| ReadIssue::ZeroVector { what: "axis of revolution" })?;
     Ok(Patch::plain(Surface::Revolution { profile, axis_origin, axis }))
 }
 
@@ -177,7 +179,7 @@ fn spline_patch(
     v: Vec<f64>,
     points: Vec<DVec3>,
     weights: Option<Vec<f64>>,
-) -> Result<Patch, String> {
-    let nurbs = NurbsSurface::new(degree, u, v, points, weights).map_err(|error| error.to_string())?;
+) -> Result<Patch, ReadIssue> {
+    let nurbs = NurbsSurface::new(degree, u, v, points, weights).map_err(ReadIssue::from)?;
     Ok(Patch::plain(Surface::Nurbs(nurbs)))
 }

@@ -1,12 +1,13 @@
 //! The file as words and numbers between blanks.
 
 use crate::step::number;
+use chordal_brep::ReadIssue;
 
 /// The text cannot be followed from here on: what was expected, and at which line.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stop {
     pub line: u32,
-    pub message: String,
+    pub issue: ReadIssue,
 }
 
 /// A place in the file.
@@ -35,13 +36,11 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    pub(crate) fn stop(&mut self, expected: &str) -> Stop {
+    pub(crate) fn stop(&mut self, expected: &'static str) -> Stop {
         let line = self.line();
-        let found = match self.peek() {
-            b"" => "the file ends".to_owned(),
-            word => format!("{:?} stands", String::from_utf8_lossy(&word[..word.len().min(20)])),
-        };
-        Stop { line, message: format!("{found} where {expected} belongs") }
+        let word = self.peek();
+        let found = String::from_utf8_lossy(&word[..word.len().min(20)]).into_owned();
+        Stop { line, issue: ReadIssue::Expected { expected, found } }
     }
 
     /// The next word, empty at the end of the file; it is not passed over.

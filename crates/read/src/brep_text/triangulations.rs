@@ -2,6 +2,7 @@
 
 use super::curves::{Parsed, point};
 use super::tokens::Tokens;
+use chordal_brep::ReadIssue;
 use chordal_nurbs::DVec3;
 
 /// Triangles in the coordinates of their face.
@@ -32,7 +33,7 @@ pub(crate) fn triangulation(tokens: &mut Tokens<'_>, version: u32) -> Parsed<Tri
     for _ in 0..count {
         let corners = [tokens.integer()?, tokens.integer()?, tokens.integer()?];
         if let Some(corner) = corners.iter().find(|&&c| c < 1 || c as u64 > nodes as u64) {
-            bad = Some(format!("a triangle has the corner {corner} of {nodes}"));
+            bad = Some(ReadIssue::NotFound { what: "corner", number: *corner });
         } else {
             read.triangles.push(corners.map(|c| (c - 1) as u32));
         }
@@ -43,7 +44,7 @@ pub(crate) fn triangulation(tokens: &mut Tokens<'_>, version: u32) -> Parsed<Tri
         }
     }
     if read.points.iter().chain(&read.normals).any(|p| !p.is_finite()) {
-        bad = Some("a point of a triangulation is not a number".to_owned());
+        bad = Some(ReadIssue::NotFinite { what: "point of a triangulation" });
     }
     Ok(bad.map_or(Ok(read), Err))
 }

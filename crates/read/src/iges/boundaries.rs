@@ -3,7 +3,7 @@
 use super::curves::{Segment, Segment2, segments, segments2};
 use super::document::{Doc, Ix, Res};
 use super::surfaces::Patch;
-use chordal_brep::Pcurve;
+use chordal_brep::{Pcurve, ReadIssue};
 use chordal_nurbs::{Curve2, DAffine3, DVec2, DVec3, Range, SurfaceInverter, UvBox};
 use std::sync::Arc;
 
@@ -120,10 +120,10 @@ fn either(
         ix,
     };
     if boundary.model.is_empty() && boundary.parameters.is_empty() {
-        return Err(problem.unwrap_or_else(|| doc.bad(ix, "has no usable curve")));
+        return Err(problem.unwrap_or_else(|| doc.bad(ix, ReadIssue::Missing { what: "usable curve" })));
     }
     if let Some(problem) = problem {
-        doc.warn(ix, format!("one of its two curves is left out: {problem}"));
+        doc.warn(ix, ReadIssue::CurveIgnored { cause: problem.issue().clone().boxed() });
     }
     Ok(boundary)
 }
@@ -138,7 +138,7 @@ fn model_curve(doc: &Doc<'_>, curve: Option<Ix>, by: &DAffine3, forward: bool) -
         all.reverse();
     }
     let finite = |use_: &ModelUse| use_.start().is_finite() && use_.end().is_finite();
-    if all.iter().all(finite) { Ok(all) } else { Err(doc.bad(curve, "reaches no finite place")) }
+    if all.iter().all(finite) { Ok(all) } else { Err(doc.bad(curve, ReadIssue::NotFinite { what: "curve" })) }
 }
 
 fn parameter_curve(doc: &Doc<'_>, curve: Option<Ix>, patch: &Patch) -> Res<Vec<ParameterUse>> {
@@ -147,7 +147,7 @@ fn parameter_curve(doc: &Doc<'_>, curve: Option<Ix>, patch: &Patch) -> Res<Vec<P
     let all = segments2(doc, curve, |p_uv| parameters.map(p_uv))?;
     let finite = |segment: &Segment2| segment.at(0.0).is_finite() && segment.at(1.0).is_finite();
     if !all.iter().all(finite) {
-        return Err(doc.bad(curve, "reaches no finite place"));
+        return Err(doc.bad(curve, ReadIssue::NotFinite { what: "curve" }));
     }
     Ok(all.into_iter().map(|segment| ParameterUse { segment, forward: true }).collect())
 }

@@ -1,8 +1,8 @@
 //! A part under construction: what of it exists already, by entity.
 
-use super::document::{Doc, Ix, Res};
+use super::document::{Bad, Doc, Ix, Res};
 use super::topology::{EdgeRow, KnownEdge};
-use crate::build::PartBuilder;
+use crate::assemble::PartBuilder;
 use crate::trimmed::Look;
 use chordal_brep::{FaceId, VertexId};
 use chordal_nurbs::{DAffine3, DVec3};
@@ -46,7 +46,7 @@ impl<'d, 'a> Builder<'d, 'a> {
     }
 
     /// Adds a face that could not be understood.
-    pub(crate) fn failed(&mut self, reason: String, look: &Look) -> FaceId {
-        crate::trimmed::add_failed(&mut self.build.part, reason, look)
+    pub(crate) fn failed(&mut self, bad: Bad, look: &Look) -> FaceId {
+        crate::trimmed::push_failed(&mut self.build.part, bad.into_error(), look)
     }
 }

@@ -1,6 +1,7 @@
 //! Arcs and conics: types 100 and 104.
 
 use super::document::{Doc, Ix, Res};
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{Curve, DVec2, Frame, Range};
 use std::f64::consts::TAU;
 
@@ -16,7 +17,7 @@ pub(crate) fn arc(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
     let (from, to) = (start - center, end - center);
     let radius = from.length();
     if !(radius > 0.0) {
-        return Err(doc.bad(ix, "the radius is zero"));
+        return Err(doc.bad(ix, ReadIssue::BadValue { what: "radius", value: Real(0.0) }));
     }
     let frame = Frame { origin: center.extend(height), ..Frame::WORLD };
     let range = ccw(from.to_angle(), to.to_angle(), start.distance(end) <= FULL * radius);
@@ -55,7 +56,7 @@ pub(crate) fn conic(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
     let linear = |v: DVec2| k[3] * v.x + k[4] * v.y;
     let turned = Turned { x, y, a: quadratic(x), c: quadratic(y), d: linear(x), e: linear(y), f: k[5] };
     let found = turned.curve(height, start, end);
-    found.ok_or_else(|| doc.bad(ix, "its coefficients are those of no conic with two ends"))
+    found.ok_or_else(|| doc.bad(ix, ReadIssue::NotAConic))
 }
 
 impl Turned {

@@ -2,6 +2,7 @@
 
 use super::document::{Doc, Ix, Res};
 use super::{conics, matrix, splines};
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{
     CompositeSegment, Curve, Curve2, DAffine3, DVec2, DVec3, NurbsCurve, NurbsCurve3, Range,
 };
@@ -62,12 +63,16 @@ fn is_path(form: i64) -> bool {
 pub(crate) fn segments(doc: &Doc<'_>, ix: Ix, by: &DAffine3) -> Res<Vec<Segment>> {
     let mut all = Vec::new();
     append(doc, ix, by, 0, &mut all)?;
-    if all.is_empty() { Err(doc.bad(ix, "has no segments")) } else { Ok(all) }
+    if all.is_empty() {
+        Err(doc.bad(ix, ReadIssue::TooFew { what: "segments", found: 0, least: 1 }))
+    } else {
+        Ok(all)
+    }
 }
 
 fn append(doc: &Doc<'_>, ix: Ix, by: &DAffine3, depth: u32, all: &mut Vec<Segment>) -> Res<()> {
     if depth > MAX_DEPTH {
-        return Err(doc.bad(ix, "is defined by itself"));
+        return Err(doc.recursive(ix, MAX_DEPTH));
     }
     let by = *by * matrix::of_entity(doc, ix)?;
     if doc.kind(ix) == 102 {
@@ -112,7 +117,7 @@ fn simple(doc: &Doc<'_>, ix: Ix, depth: u32) -> Res<(Curve, Range)> {
         112 => splines::cubic_curve(doc, ix),
         126 => splines::curve(doc, ix),
         130 => offset(doc, ix, depth),
-        _ => Err(doc.bad(ix, "is not a curve that this reader knows")),
+        _ => Err(doc.unknown(ix, "a curve")),
     }
 }
 
@@ -131,10 +136,12 @@ fn path(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
             let flat = args.reals(each * count)?;
             flat.chunks_exact(each).map(|p| DVec3::new(p[0], p[1], p[2])).collect::<Vec<_>>()
         }
-        _ => return Err(doc.bad(ix, format!("its points are of the unknown kind {form}"))),
+        _ => {
+            return Err(doc.bad(ix, ReadIssue::BadValue { what: "kind of points", value: Real(form as f64) }));
+        }
     };
     if points.len() < 2 {
-        return Err(doc.bad(ix, "has fewer than two points"));
+        return Err(doc.bad(ix, ReadIssue::TooFew { what: "points", found: points.len(), least: 2 }));
     }
     let curve = Curve::Polyline(points);
     let range = curve.domain();
@@ -146,7 +153,7 @@ fn offset(doc: &Doc<'_>, ix: Ix, depth: u32) -> Res<(Curve, Range)> {
     let mut args = doc.open(ix)?;
     let (basis, kind) = (args.reference()?, args.integer()?);
     if kind != 1 {
-        return Err(doc.bad(ix, "is an offset by a distance that varies"));
+        return Err(doc.bad(ix, ReadIssue::Unsupported { what: "an offset by a varying distance".into() }));
     }
     args.skip(3);
     let distance = args.real()?;
@@ -157,7 +164,7 @@ fn offset(doc: &Doc<'_>, ix: Ix, depth: u32) -> Res<(Curve, Range)> {
     append(doc, basis, &DAffine3::IDENTITY, depth + 1, &mut pieces)?;
     let Segment { curve, range } = joined(doc, ix, pieces)?;
     let Some(normal) = normal.try_normalize() else {
-        return Err(doc.bad(ix, "the normal of its plane is a zero vector"));
+        return Err(doc.bad(ix, ReadIssue::ZeroVector { what: "normal of the plane" }));
     };
     let range = match (from, to) {
         (Some(from), Some(to)) if from < to => Range::new(from.max(range.start), to.min(range.end)),

@@ -3,36 +3,14 @@
 use super::global::{Global, padded};
 use super::lines::{Line, Sections, number};
 use super::parameters::{Record, Value, record};
-use crate::build::Notes;
-use chordal_brep::Source;
+use crate::assemble::Notes;
+pub(crate) use crate::assemble::{Bad, Res};
+use chordal_brep::{Millimetres, ReadIssue, Source, Word};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
-use std::fmt::Display;
 
 /// The position of an entity in the table.
 pub(crate) type Ix = usize;
-
-/// Why an entity cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Bad(Box<(Source, String)>);
-
-/// A result whose error names an entity and says what is wrong with it.
-pub(crate) type Res<T> = Result<T, Bad>;
-
-impl Bad {
-    pub(crate) fn source(&self) -> Source {
-        self.0.0
-    }
-    pub(crate) fn message(&self) -> &str {
-        &self.0.1
-    }
-}
-
-impl Display for Bad {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {}", self.0.0, self.0.1)
-    }
-}
 
 /// An entity's entry in the directory.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,15 +51,15 @@ impl<'a> Doc<'a> {
     pub(crate) fn new(sections: Sections<'a>, size: usize) -> Self {
         let global = Global::read(&sections.global);
         let notes = Notes::default();
-        for problem in &global.problems {
+        for issue in &global.issues {
             let line = sections.global.first().map_or(0, |line| line.line);
-            notes.warn(Source { entity: 0, line }, problem.clone());
+            notes.warn(Source { entity: 0, line }, issue.clone());
         }
         if let Some(line) = sections.stray {
-            notes.warn(Source { entity: 0, line }, "a line belongs to no section; left out");
+            notes.warn(Source { entity: 0, line }, ReadIssue::StrayBytes);
         }
         if !sections.ended {
-            notes.warn(Source::default(), "the file has no terminate section; it may have been cut off");
+            notes.warn(Source::default(), ReadIssue::SectionMissing { section: "T (terminate)" });
         }
         let entries = directory(&sections.directory, &notes);
         let by_number = entries.iter().enumerate().rev().map(|(ix, entry)| (entry.number, ix)).collect();
@@ -113,28 +91,48 @@ impl<'a> Doc<'a> {
         self.by_number.get(&number.unsigned_abs()).copied()
     }
 
-    pub(crate) fn bad(&self, ix: Ix, message: impl Display) -> Bad {
-        Bad(Box::new((self.source(ix), format!("(type {}): {message}", self.kind(ix)))))
+    pub(crate) fn bad(&self, ix: Ix, issue: impl Into<ReadIssue>) -> Bad {
+        Bad::new(self.source(ix), issue)
     }
 
-    pub(crate) fn warn(&self, ix: Ix, message: impl Display) {
-        self.notes.warn(self.source(ix), format!("(type {}): {message}", self.kind(ix)));
+    /// An entity is of another kind than `expected`, which carries its article.
+    pub(crate) fn unknown(&self, ix: Ix, expected: &'static str) -> Bad {
+        self.bad(ix, ReadIssue::UnknownKind { found: self.word(ix), expected })
+    }
+
+    /// An entity is defined by itself or by more than `levels` entities one within the other.
+    pub(crate) fn recursive(&self, ix: Ix, levels: u32) -> Bad {
+        self.bad(ix, ReadIssue::Recursive { keyword: self.word(ix), levels })
+    }
+
+    /// The type of an entity for messages.
+    pub(crate) fn word(&self, ix: Ix) -> Word {
+        format!("type {}", self.kind(ix)).into()
+    }
+
+    /// A length in the file's unit, for messages.
+    pub(crate) fn millimetres(&self, length: f64) -> Millimetres {
+        Millimetres(length * self.global.length_mm)
+    }
+
+    pub(crate) fn warn(&self, ix: Ix, issue: impl Into<ReadIssue>) {
+        self.notes.warn(self.source(ix), issue);
     }
 
     /// Some of the file's shape will be missing.
-    pub(crate) fn lose(&self, ix: Ix, message: impl Display) {
-        self.notes.lose(self.source(ix), format!("(type {}): {message}", self.kind(ix)));
+    pub(crate) fn lose(&self, ix: Ix, issue: impl Into<ReadIssue>) {
+        self.notes.lose(self.source(ix), issue);
     }
 
     pub(crate) fn lose_bad(&self, bad: &Bad) {
-        self.notes.lose(bad.source(), bad.message());
+        self.notes.push(bad.clone().into_error());
     }
 
     /// The parameters of an entity.
     pub(crate) fn open(&self, ix: Ix) -> Res<Args<'_>> {
         let entry = &self.entries[ix];
         let first = self.parameter_position(entry.parameter_line);
-        let Some(first) = first else { return Err(self.bad(ix, "has no parameters")) };
+        let Some(first) = first else { return Err(self.bad(ix, ReadIssue::NoAttributes)) };
         let mut text: Vec<u8> = Vec::new();
         let mut taken = 0;
         let mut found = Record::default();
@@ -157,13 +155,19 @@ impl<'a> Doc<'a> {
             found = record(&text, self.global.parameter_delimiter, self.global.record_delimiter);
         }
         let left = self.budget.get().checked_sub(text.len() as u64 + 1);
-        self.budget.set(left.ok_or_else(|| self.bad(ix, "too many references lead here"))?);
+        self.budget.set(left.ok_or_else(|| self.bad(ix, ReadIssue::TooManyReferences))?);
         match found.values.first() {
             Some(Value::Number(kind)) if *kind == f64::from(entry.kind) => {}
             Some(Value::Number(kind)) => {
-                return Err(self.bad(ix, format!("its parameters are those of a type {kind}")));
+                return Err(self.bad(
+                    ix,
+                    ReadIssue::UnknownKind {
+                        found: format!("the parameter record of type {kind}").into(),
+                        expected: "that of this entity",
+                    },
+                ));
             }
-            _ => return Err(self.bad(ix, "its parameters cannot be read")),
+            _ => return Err(self.bad(ix, ReadIssue::Missing { what: "readable parameters" })),
         }
         Ok(Args { doc: self, ix, values: found.values, at: 1 })
     }
@@ -200,7 +204,7 @@ fn directory(lines: &[Line<'_>], notes: &Notes) -> Vec<Entry> {
             }
             _ => {
                 let source = Source { entity: first.sequence, line: first.line };
-                notes.lose(source, "a directory entry is broken; left out");
+                notes.lose(source, ReadIssue::Unsupported { what: "a broken directory entry".into() });
                 rest = after;
             }
         }
@@ -270,8 +274,21 @@ impl Args<'_> {
         self.values.get(self.at - 1)
     }
 
-    fn wrong(&self, expected: &str) -> Bad {
-        self.doc.bad(self.ix, format!("parameter {} should be {expected}", self.at - 1))
+    fn wrong(&self, expected: &'static str) -> Bad {
+        let (keyword, number) = (self.doc.word(self.ix), (self.at - 1) as u32);
+        self.doc.bad(
+            self.ix,
+            match self.values.get(self.at - 1) {
+                Some(Value::Number(value)) => {
+                    ReadIssue::WrongAttribute { keyword, number, expected, found: value.to_string() }
+                }
+                Some(Value::Text(text)) => {
+                    let found = String::from_utf8_lossy(text).chars().take(24).collect();
+                    ReadIssue::WrongAttribute { keyword, number, expected, found }
+                }
+                _ => ReadIssue::MissingAttribute { keyword, number, expected },
+            },
+        )
     }
 
     pub(crate) fn skip(&mut self, count: usize) {
@@ -309,20 +326,20 @@ impl Args<'_> {
         let value = self.integer()?;
         match usize::try_from(value) {
             Ok(count) if count <= self.left() => Ok(count),
-            _ => Err(self.doc.bad(
-                self.ix,
-                format!("{value} things are announced where {} parameters follow", self.left()),
-            )),
+            _ => {
+                let least = usize::try_from(value).unwrap_or(usize::MAX);
+                Err(self
+                    .doc
+                    .bad(self.ix, ReadIssue::TooFew { what: "parameters left", found: self.left(), least }))
+            }
         }
     }
 
     /// `count` numbers. Nothing is allocated unless there are as many.
     pub(crate) fn reals(&mut self, count: usize) -> Res<Vec<f64>> {
         if count > self.left() {
-            return Err(self.doc.bad(
-                self.ix,
-                format!("{count} numbers are needed where {} parameters follow", self.left()),
-            ));
+            let few = ReadIssue::TooFew { what: "parameters left", found: self.left(), least: count };
+            return Err(self.doc.bad(self.ix, few));
         }
         (0..count).map(|_| self.real()).collect()
     }
@@ -338,9 +355,7 @@ impl Args<'_> {
             return Ok(None);
         }
         let found = self.doc.find(number);
-        found
-            .map(Some)
-            .ok_or_else(|| self.doc.bad(self.ix, format!("refers to #{number}, which is not there")))
+        found.map(Some).ok_or_else(|| self.doc.bad(self.ix, ReadIssue::NotFound { what: "entity", number }))
     }
 
     pub(crate) fn reference(&mut self) -> Res<Ix> {

@@ -12,7 +12,7 @@ use super::own_border::stands_for_border;
 use super::simpler::elementary;
 use super::surfaces::{Patch, surface};
 use crate::trimmed::{self, Look, Piece, Role, TrimLoop};
-use chordal_brep::{Face, FaceGeometry, FaceId, Loop};
+use chordal_brep::{Face, FaceGeometry, FaceId, Loop, ReadIssue};
 use chordal_nurbs::{DAffine3, DVec2, UvBox};
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ impl Builder<'_, '_> {
             108 => self.plane(ix, &look),
             _ => self.whole_surface(ix, &look),
         };
-        made.unwrap_or_else(|bad| vec![self.failed(bad.to_string(), &look)])
+        made.unwrap_or_else(|bad| vec![self.failed(bad, &look)])
     }
 
     /// 144: surface, whether the outer boundary is given, number of inner boundaries, outer one, inner ones.
@@ -51,7 +51,7 @@ impl Builder<'_, '_> {
                 boundaries::curve_on_surface(self.doc, ix, &(*by * matrix::of_entity(self.doc, ix)?), patch)
             }
             141 => boundaries::boundary(self.doc, ix, &(*by * matrix::of_entity(self.doc, ix)?), patch),
-            _ => Err(self.doc.bad(ix, "is not a boundary that this reader knows")),
+            _ => Err(self.doc.unknown(ix, "a boundary")),
         }
     }
 
@@ -94,8 +94,7 @@ impl Builder<'_, '_> {
         let slack = |boundary: &Boundary| (LOOSE * boundary.size()).max(4.0 * resolution);
         let mut all = self.boundaries(&list, by, &patch)?;
         if has_outer && all.len() == 1 && stands_for_border(&all[0], &patch, resolution) {
-            self.doc
-                .warn(all[0].ix, "it does not close and runs along the border of its surface; that is taken");
+            self.doc.warn(all[0].ix, ReadIssue::BoundaryIsBorder);
             return self.whole(ix, &patch, look);
         }
         if has_outer
@@ -120,8 +119,7 @@ impl Builder<'_, '_> {
             return Ok(self.cut_in_parameters(&patch, &all, has_outer, look));
         }
         if let Some(missing) = all.iter().find(|boundary| boundary.model.is_empty()) {
-            let what = "has no curve in space, and others have none in parameter space";
-            return Err(self.doc.bad(missing.ix, what));
+            return Err(self.doc.bad(missing.ix, ReadIssue::MixedCurves));
         }
         self.cut_in_space(ix, &patch, all, turns, has_outer, look)
     }
@@ -154,11 +152,7 @@ impl Builder<'_, '_> {
     fn add_faces(&mut self, patch: &Patch, trims: &[TrimLoop], look: &Look) -> Vec<FaceId> {
         let look = Look { flipped: look.flipped != patch.reversed, ..look.clone() };
         let surface = Arc::new(patch.surface.clone());
-        let mut warnings = Vec::new();
-        let faces = trimmed::add_faces(&mut self.build.part, &surface, trims, &look, &mut warnings);
-        for warning in warnings {
-            self.doc.notes.warn(warning.source, warning.message);
-        }
+        let faces = trimmed::add_faces(&mut self.build.part, &surface, trims, &look, &self.doc.notes);
         faces
     }
 
@@ -178,8 +172,8 @@ impl Builder<'_, '_> {
             let size = boundary.size();
             match self.model_loop(boundary.ix, boundary.model, size, patch, outer, turn) {
                 Some(coedges) => loops.push(Loop::Edges { coedges, outer }),
-                None if outer => return Err(self.doc.bad(boundary.ix, "has no extent")),
-                None => self.doc.warn(boundary.ix, "an inner boundary has no extent; left out"),
+                None if outer => return Err(self.doc.bad(boundary.ix, ReadIssue::NoExtent)),
+                None => self.doc.warn(boundary.ix, ReadIssue::InnerBoundaryIgnored),
             }
         }
         if !has_outer {
@@ -212,7 +206,7 @@ impl Builder<'_, '_> {
     fn whole(&mut self, ix: Ix, patch: &Patch, look: &Look) -> Res<Vec<FaceId>> {
         let trims: Vec<TrimLoop> = patch.bounds.iter().map(|uv| rectangle(*uv, look)).collect();
         if trims.is_empty() && !patch.surface.domain().is_finite() {
-            return Err(self.doc.bad(ix, "is a surface without bounds"));
+            return Err(self.doc.bad(ix, ReadIssue::SurfaceUnbounded));
         }
         Ok(self.add_faces(patch, &trims, look))
     }
@@ -223,7 +217,7 @@ impl Builder<'_, '_> {
         let mut args = self.doc.open(ix)?;
         args.skip(4);
         let Some(curve) = args.optional_reference()? else {
-            return Err(self.doc.bad(ix, "is a plane without bounds"));
+            return Err(self.doc.bad(ix, ReadIssue::SurfaceUnbounded));
         };
         let patch = surface(self.doc, ix, &DAffine3::IDENTITY)?;
         let boundary = boundaries::in_space(self.doc, curve, &by)?;

@@ -2,6 +2,7 @@
 
 use super::lines::Line;
 use super::parameters::{Record, Value, record};
+use chordal_brep::{ReadIssue, Real};
 
 /// What the global section says of the whole file.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +17,7 @@ pub(crate) struct Global {
     pub version: i64,
     pub product: String,
     /// What had to be guessed.
-    pub problems: Vec<String>,
+    pub issues: Vec<ReadIssue>,
 }
 
 /// Millimetres and name by the flag of the file.
@@ -39,9 +40,13 @@ impl Global {
         let [parameter, end] = delimiters(&text);
         // The delimiters are parameters themselves: `1H,` and `1H;`, or left out.
         let Record { values, ended } = record(&text, parameter, end);
-        let mut problems = Vec::new();
+        let mut issues = Vec::new();
         if !ended {
-            problems.push("the global section has no end".to_owned());
+            issues.push(ReadIssue::SectionTruncated {
+                section: "G (global)",
+                item: values.len(),
+                cause: ReadIssue::Missing { what: "record delimiter" }.boxed(),
+            });
         }
         let number = |i: usize| match values.get(i - 1) {
             Some(Value::Number(value)) => Some(*value),
@@ -51,11 +56,11 @@ impl Global {
             Some(Value::Text(text)) => String::from_utf8_lossy(text).trim().to_owned(),
             _ => String::new(),
         };
-        let (mut length_mm, unit) = unit(number(14), &string(15), &mut problems);
+        let (mut length_mm, unit) = unit(number(14), &string(15), &mut issues);
         match number(13) {
             Some(scale) if scale > 0.0 && scale.is_finite() => length_mm /= scale,
             None => {}
-            Some(scale) => problems.push(format!("the model's scale is {scale}; taken for 1")),
+            Some(scale) => issues.push(ReadIssue::ScaleIgnored { scale: Real(scale) }),
         }
         Self {
             parameter_delimiter: parameter,
@@ -65,7 +70,7 @@ impl Global {
             resolution: number(19).filter(|r| *r > 0.0 && r.is_finite()),
             version: number(23).unwrap_or(3.0) as i64,
             product: string(3),
-            problems,
+            issues,
         }
     }
 
@@ -106,7 +111,7 @@ fn delimiters(text: &[u8]) -> [u8; 2] {
     }
 }
 
-fn unit(flag: Option<f64>, name: &str, problems: &mut Vec<String>) -> (f64, String) {
+fn unit(flag: Option<f64>, name: &str, issues: &mut Vec<ReadIssue>) -> (f64, String) {
     let name = name.to_ascii_uppercase();
     let by_name = UNITS.iter().find(|(.., names)| names.contains(&name.as_str()));
     let by_flag = flag.and_then(|flag| UNITS.iter().find(|(code, ..)| f64::from(*code) == flag));
@@ -115,7 +120,7 @@ fn unit(flag: Option<f64>, name: &str, problems: &mut Vec<String>) -> (f64, Stri
         (None, Some(found)) => found,
         (None, None) => {
             if flag.is_some_and(|flag| flag != 0.0) || !name.is_empty() {
-                problems.push(format!("the unit {name:?} is not known; inches are assumed, the default"));
+                issues.push(ReadIssue::UnitUnknown { name, assumed: "inches" });
             }
             &UNITS[0]
         }
@@ -138,7 +143,7 @@ mod tests {
         assert_eq!((mm.length_mm, mm.unit.as_str(), mm.resolution), (0.5, "mm", Some(1e-5)));
         assert_eq!((mm.version_name(), mm.product.as_str()), ("5.3 or later", "part"));
         let default = read(&format!("1H,,1H;,4Hpart,1Hx,1Hy,1Hz,32,38,6,38,15,,1.,0,,1,0.1,{tail}"));
-        assert_eq!((default.length_mm, default.problems.len()), (25.4, 0));
+        assert_eq!((default.length_mm, default.issues.len()), (25.4, 0));
         let named = read(&format!("1H,,1H;,4Hpart,1Hx,1Hy,1Hz,32,38,6,38,15,,1.,3,2HCM,1,0.1,{tail}"));
         assert_eq!(named.length_mm, 10.0);
     }

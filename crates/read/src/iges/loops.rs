@@ -4,7 +4,7 @@ use super::boundaries::ModelUse;
 use super::builder::Builder;
 use super::document::Ix;
 use super::surfaces::Patch;
-use chordal_brep::{Coedge, Edge, Pcurve, Source, VertexId};
+use chordal_brep::{Coedge, Edge, Pcurve, ReadIssue, Source, VertexId};
 use chordal_nurbs::{Curve, Curve2, DVec2, DVec3, Range};
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ impl Builder<'_, '_> {
         }
         let tolerance = (2.0 * resolution).min(1e-3 * size).max(1e-6 * size);
         if turn_misfits(&mut pieces, tolerance) {
-            self.doc.warn(ix, "some of its curves run against the others; they are turned round");
+            self.doc.warn(ix, ReadIssue::EdgeTurned);
         }
         match area(&pieces).map(|area| area > 0.0).or(turn) {
             Some(ccw) if ccw != outer => reverse(&mut pieces),
@@ -92,8 +92,7 @@ impl Builder<'_, '_> {
             }
         }
         if widest > tolerance {
-            let what = format!("its curves are up to {widest:.3e} apart; joined along the surface");
-            self.doc.warn(ix, what);
+            self.doc.warn(ix, ReadIssue::GapOnSurface { gap: self.doc.millimetres(widest) });
         }
         coedges
     }

@@ -1,7 +1,8 @@
 //! Type 124: transformation matrices.
 
 use super::document::{Doc, Ix, Res};
-use crate::build::placement;
+use crate::assemble::placement;
+use chordal_brep::ReadIssue;
 use chordal_nurbs::DAffine3;
 
 /// Matrices that refer to matrices, deeper than this, refer in a circle.
@@ -18,13 +19,13 @@ pub(crate) fn of_entity(doc: &Doc<'_>, ix: Ix) -> Res<DAffine3> {
         }
         let found = doc.find(pointer).filter(|&m| doc.kind(m) == 124);
         let Some(matrix) = found else {
-            return Err(doc.bad(at, format!("its transformation #{pointer} is no matrix")));
+            return Err(doc.bad(at, ReadIssue::NotFound { what: "transformation matrix", number: pointer }));
         };
         // A matrix's own matrix is applied after it.
         whole = read(doc, matrix)? * whole;
         at = matrix;
     }
-    Err(doc.bad(ix, "its transformation is defined by itself"))
+    Err(doc.recursive(ix, MAX_DEPTH))
 }
 
 fn read(doc: &Doc<'_>, ix: Ix) -> Res<DAffine3> {

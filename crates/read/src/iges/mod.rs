@@ -71,7 +71,8 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let found = tree::build(&doc, name);
     if found.parts.is_empty() {
         let problem = doc.notes.first();
-        let problem = problem.map_or_else(|| "none of them is a surface".to_owned(), |bad| bad.to_string());
+        let problem =
+            problem.map_or_else(|| "none of them is a surface".to_owned(), |issue| issue.to_string());
         return Err(ReadError::NothingInIt { name: name.to_owned(), entities: doc.entries.len(), problem });
     }
     Ok(Model {
@@ -81,6 +82,6 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
         parts: found.parts,
         nodes: found.nodes,
         roots: found.roots,
-        warnings: doc.notes.take(),
+        issues: doc.notes.take(),
     })
 }

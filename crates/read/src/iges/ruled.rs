@@ -5,6 +5,7 @@
 
 use super::curves::{joined, segments};
 use super::document::{Doc, Ix, Res};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve, DAffine3, NurbsCurve3, NurbsError, NurbsSurface, Surface, UvBox};
 
 /// Knots of the two curves that are nearer than this (over 0..=1) are one.
@@ -25,11 +26,11 @@ pub(crate) fn surface(doc: &Doc<'_>, ix: Ix) -> Res<(Surface, UvBox)> {
         rails.push(unit(&whole.curve.to_nurbs(whole.range).map_err(bad)?).map_err(bad)?);
     }
     if doc.entry(ix).form == 0 && !simple {
-        doc.warn(ix, "is ruled by lengths of its curves; it is read as ruled by their parameters");
+        doc.warn(ix, ReadIssue::RuledByLength);
     }
     let second = rails.pop().map(|rail| if backwards { rail.reversed() } else { rail });
     let (Some(first), Some(second)) = (rails.pop(), second) else {
-        return Err(doc.bad(ix, "has not two curves"));
+        return Err(doc.bad(ix, ReadIssue::Missing { what: "second curve" }));
     };
     let (first, second) = compatible(first, second).map_err(bad)?;
     let weight = |rail: &NurbsCurve3, i: usize| rail.weights().map_or(1.0, |w| w[i]);

@@ -1,7 +1,8 @@
 //! Splines: types 126 and 128 (rational B-splines), 112 and 114 (parametric cubics).
 
 use super::document::{Args, Doc, Ix, Res};
-use crate::build::replace_zero_weights;
+use crate::assemble::replace_zero_weights;
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve, DVec3, NurbsCurve3, NurbsSurface, Range, Surface, UvBox};
 
 /// The number of knots for an upper index and a degree, both as the file states them.
@@ -10,8 +11,11 @@ fn sizes(doc: &Doc<'_>, ix: Ix, upper: i64, degree: i64) -> Res<(usize, usize, u
         (Ok(upper), Ok(degree)) if (1..=100).contains(&degree) && upper >= degree && upper < 1 << 31 => {
             Ok((upper + 1, degree, upper + degree + 2))
         }
-        _ => Err(doc
-            .bad(ix, format!("a spline of degree {degree} with {} control points", upper.saturating_add(1)))),
+        _ => {
+            let found = usize::try_from(upper.saturating_add(1)).unwrap_or(0);
+            let least = usize::try_from(degree.saturating_add(1)).unwrap_or(1).max(2);
+            Err(doc.bad(ix, ReadIssue::TooFew { what: "control points", found, least }))
+        }
     }
 }
 
@@ -48,7 +52,7 @@ pub(crate) fn curve(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
 fn weights(doc: &Doc<'_>, ix: Ix, args: &mut Args<'_>, count: usize) -> Res<Vec<f64>> {
     let mut weights = args.reals(count)?;
     if replace_zero_weights(&mut weights) {
-        doc.warn(ix, "a weight is zero; replaced by one too small to matter");
+        doc.warn(ix, ReadIssue::ZeroWeight);
     }
     Ok(weights)
 }
@@ -106,7 +110,7 @@ pub(crate) fn cubic_curve(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
     args.skip(3);
     let count = args.count()?;
     if count == 0 {
-        return Err(doc.bad(ix, "has no pieces"));
+        return Err(doc.bad(ix, ReadIssue::TooFew { what: "pieces", found: 0, least: 1 }));
     }
     let breaks = args.reals(count + 1)?;
     let flat = args.reals(12 * count)?;
@@ -129,7 +133,7 @@ pub(crate) fn cubic_surface(doc: &Doc<'_>, ix: Ix) -> Res<(Surface, UvBox)> {
     args.skip(2);
     let [m, n] = [args.count()?, args.count()?];
     if m == 0 || n == 0 {
-        return Err(doc.bad(ix, "has no patches"));
+        return Err(doc.bad(ix, ReadIssue::TooFew { what: "patches", found: 0, least: 1 }));
     }
     let (tu, tv) = (args.reals(m + 1)?, args.reals(n + 1)?);
     let mut rows: Vec<Vec<DVec3>> = Vec::new();

@@ -3,6 +3,7 @@
 use super::curves::{Segment, joined, segments};
 use super::document::{Args, Doc, Ix, Res};
 use super::{matrix, ruled, splines};
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DAffine3, DVec2, DVec3, Frame, Range, Surface, UvBox};
 use std::f64::consts::TAU;
 
@@ -60,7 +61,7 @@ pub(crate) fn surface(doc: &Doc<'_>, ix: Ix, by: &DAffine3) -> Res<Patch> {
 
 fn nested(doc: &Doc<'_>, ix: Ix, by: &DAffine3, depth: u32) -> Res<Patch> {
     if depth > MAX_DEPTH {
-        return Err(doc.bad(ix, "is defined by itself"));
+        return Err(doc.recursive(ix, MAX_DEPTH));
     }
     let by = *by * matrix::of_entity(doc, ix)?;
     let patch = plain(doc, ix, depth)?;
@@ -68,7 +69,7 @@ fn nested(doc: &Doc<'_>, ix: Ix, by: &DAffine3, depth: u32) -> Res<Patch> {
         return Ok(patch);
     }
     let moved = patch.surface.transformed(&by);
-    let moved = moved.ok_or_else(|| doc.bad(ix, "its transformation distorts it"))?;
+    let moved = moved.ok_or_else(|| doc.bad(ix, ReadIssue::NotTransformable { what: "surface" }))?;
     let factors = moved.factors();
     let parameters =
         patch.parameters.map(|p| Parameters { factors: p.factors * factors, shift: p.shift * factors, ..p });
@@ -118,20 +119,24 @@ fn plain(doc: &Doc<'_>, ix: Ix, depth: u32) -> Res<Patch> {
             let minor = size(doc, ix, minor)?;
             Ok(Patch::elementary(Surface::Torus { frame, major, minor }))
         }
-        _ => Err(doc.bad(ix, "is not a surface that this reader knows")),
+        _ => Err(doc.unknown(ix, "a surface")),
     }
 }
 
 /// A radius. Negative ones keep their sign, see [`crate::settle_surfaces`].
 fn size(doc: &Doc<'_>, ix: Ix, radius: f64) -> Res<f64> {
     let sound = radius.is_finite() && radius != 0.0;
-    if sound { Ok(radius) } else { Err(doc.bad(ix, format!("a radius is {radius}"))) }
+    if sound {
+        Ok(radius)
+    } else {
+        Err(doc.bad(ix, ReadIssue::BadValue { what: "radius", value: Real(radius) }))
+    }
 }
 
 /// Type 116, moved by its own transformation.
 pub(crate) fn point(doc: &Doc<'_>, ix: Ix) -> Res<DVec3> {
     if doc.kind(ix) != 116 {
-        return Err(doc.bad(ix, "is not a point"));
+        return Err(doc.unknown(ix, "a point"));
     }
     let p = doc.open(ix)?.point()?;
     Ok(matrix::of_entity(doc, ix)?.transform_point3(p))
@@ -140,10 +145,10 @@ pub(crate) fn point(doc: &Doc<'_>, ix: Ix) -> Res<DVec3> {
 /// Type 123, turned by its own transformation.
 fn direction(doc: &Doc<'_>, ix: Ix) -> Res<DVec3> {
     if doc.kind(ix) != 123 {
-        return Err(doc.bad(ix, "is not a direction"));
+        return Err(doc.unknown(ix, "a direction"));
     }
     let d = matrix::of_entity(doc, ix)?.transform_vector3(doc.open(ix)?.point()?);
-    d.try_normalize().ok_or_else(|| doc.bad(ix, "is a zero vector"))
+    d.try_normalize().ok_or_else(|| doc.bad(ix, ReadIssue::ZeroVector { what: "direction" }))
 }
 
 /// A point, an axis, `N` numbers, and in form 1 a reference direction.
@@ -177,9 +182,7 @@ fn placed(
 
 fn cone(doc: &Doc<'_>, ix: Ix, frame: Frame, radius: f64, half_angle: f64) -> Res<Patch> {
     if !(radius.is_finite() && half_angle.is_finite()) {
-        return Err(
-            doc.bad(ix, format!("a cone with radius {radius} and a half angle of {half_angle} radians"))
-        );
+        return Err(doc.bad(ix, ReadIssue::NotFinite { what: "radius or half angle" }));
     }
     Ok(Patch::elementary(Surface::Cone { frame, radius, half_angle }))
 }
@@ -189,7 +192,7 @@ fn plane(doc: &Doc<'_>, ix: Ix, mut args: Args<'_>) -> Res<Patch> {
     let (normal, distance) = (args.point()?, args.real()?);
     let length = normal.length();
     if !(length > 0.0) {
-        return Err(doc.bad(ix, "its normal is a zero vector"));
+        return Err(doc.bad(ix, ReadIssue::ZeroVector { what: "normal" }));
     }
     let origin = normal * (distance / (length * length));
     Ok(Patch::elementary(Surface::Plane { frame: Frame::new(origin, normal, DVec3::X) }))
@@ -206,7 +209,7 @@ fn revolution(doc: &Doc<'_>, ix: Ix, mut args: Args<'_>) -> Res<Patch> {
     let (start, end) = (args.real()?, args.real()?);
     let axis = profile(doc, ix, axis)?;
     let (axis_origin, direction) = (axis.start(), (axis.end() - axis.start()).try_normalize());
-    let Some(axis) = direction else { return Err(doc.bad(ix, "its axis has no direction")) };
+    let Some(axis) = direction else { return Err(doc.bad(ix, ReadIssue::ZeroVector { what: "axis" })) };
     let Segment { curve: profile, range } = profile(doc, ix, generatrix)?;
     let end = if end > start { end } else { end + TAU };
     // Angles are rounded: nearly a whole turn is one.
@@ -228,7 +231,7 @@ fn tabulated(doc: &Doc<'_>, ix: Ix, mut args: Args<'_>) -> Res<Patch> {
     let Segment { curve: profile, range } = profile(doc, ix, directrix)?;
     let direction = end - profile.point(range.start);
     if !(direction.length() > 0.0) {
-        return Err(doc.bad(ix, "its generatrix has no length"));
+        return Err(doc.bad(ix, ReadIssue::NoLength { what: "generatrix" }));
     }
     Ok(Patch {
         surface: Surface::Extrusion { profile, direction },

@@ -10,7 +10,8 @@ use super::surfaces::{Patch, surface};
 use crate::step::locate::locate;
 use crate::trimmed::Look;
 use chordal_brep::{
-    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, Pcurve, Shell, ShellId, VertexId,
+    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Issue, Loop, Pcurve, ReadIssue, Real,
+    Shell, ShellId, VertexId,
 };
 use chordal_nurbs::{Curve, DAffine3, DVec3, Range};
 use std::sync::Arc;
@@ -74,7 +75,7 @@ impl Builder<'_, '_> {
     /// 514: faces with their senses.
     fn shell(&mut self, ix: Ix, flipped: bool, closed: bool) -> Res<ShellId> {
         if self.doc.kind(ix) != 514 {
-            return Err(self.doc.bad(ix, "is not a shell"));
+            return Err(self.doc.unknown(ix, "a shell"));
         }
         let own = self.look(ix);
         let by = self.by * matrix::of_entity(self.doc, ix)?;
@@ -116,14 +117,14 @@ impl Builder<'_, '_> {
                 });
                 id
             }
-            Err(bad) => self.failed(bad.to_string(), look),
+            Err(bad) => self.failed(bad, look),
         }
     }
 
     /// 510: surface, number of loops, whether the first is the outer one, loops.
     fn read_face(&mut self, ix: Ix, by: &DAffine3) -> Res<(Patch, Vec<Loop>)> {
         if self.doc.kind(ix) != 510 {
-            return Err(self.doc.bad(ix, "is not a face"));
+            return Err(self.doc.unknown(ix, "a face"));
         }
         let by = *by * matrix::of_entity(self.doc, ix)?;
         let mut args = self.doc.open(ix)?;
@@ -131,7 +132,9 @@ impl Builder<'_, '_> {
         let count = args.integer()?;
         let first_is_outer = args.integer()? != 0;
         if count < 0 || count as usize > args.left() {
-            return Err(self.doc.bad(ix, format!("has {count} loops")));
+            return Err(self
+                .doc
+                .bad(ix, ReadIssue::BadValue { what: "number of loops", value: Real(count as f64) }));
         }
         let patch = surface(self.doc, basis, &by)?;
         let patch = elementary(&patch).filter(|_| count > 0).unwrap_or(patch);
@@ -141,7 +144,7 @@ impl Builder<'_, '_> {
             loops.push(self.edge_loop(args.reference()?, &patch, outer)?);
         }
         if loops.is_empty() && !patch.surface.domain().is_finite() {
-            return Err(self.doc.bad(ix, "has neither loops nor a bounded surface"));
+            return Err(self.doc.bad(ix, ReadIssue::NoBoundary));
         }
         Ok((patch, loops))
     }
@@ -149,7 +152,7 @@ impl Builder<'_, '_> {
     /// 508: uses of edges and vertices.
     fn edge_loop(&mut self, ix: Ix, patch: &Patch, outer: bool) -> Res<Loop> {
         if self.doc.kind(ix) != 508 {
-            return Err(self.doc.bad(ix, "is not a loop"));
+            return Err(self.doc.unknown(ix, "a loop"));
         }
         let source = self.doc.source(ix);
         let mut args = self.doc.open(ix)?;
@@ -178,11 +181,11 @@ impl Builder<'_, '_> {
             return Ok(Loop::Vertex(vertex));
         }
         if coedges.is_empty() {
-            return Err(self.doc.bad(ix, "has no edges"));
+            return Err(self.doc.bad(ix, ReadIssue::NoEdges));
         }
         let gap = self.build.close(&mut coedges, 2.0 * self.resolution(), source);
         if gap > 0.0 {
-            self.doc.warn(ix, format!("its edges are up to {gap:.3e} apart; joined by straight edges"));
+            self.doc.warn(ix, ReadIssue::GapClosed { gap: self.doc.millimetres(gap) });
         }
         Ok(Loop::Edges { coedges, outer })
     }
@@ -232,7 +235,7 @@ impl Builder<'_, '_> {
         }
         let read = || -> Res<Arc<[DVec3]>> {
             if self.doc.kind(ix) != 502 {
-                return Err(self.doc.bad(ix, "is not a list of vertices"));
+                return Err(self.doc.unknown(ix, "a list of vertices"));
             }
             let mut args = self.doc.open(ix)?;
             (0..args.count()?).map(|_| args.point()).collect()
@@ -248,8 +251,9 @@ impl Builder<'_, '_> {
         }
         let points = self.vertex_list(list)?;
         let point = points.get(position).copied();
-        let point = point
-            .ok_or_else(|| self.doc.bad(list, format!("has no vertex {}", position.saturating_add(1))))?;
+        let point = point.ok_or_else(|| {
+            self.doc.bad(list, ReadIssue::NotFound { what: "vertex", number: position as i64 + 1 })
+        })?;
         let point = (self.by * matrix::of_entity(self.doc, list)?).transform_point3(point);
         let id = self.build.new_vertex(point, self.doc.source(list));
         self.vertices.insert((list, position), id);
@@ -263,7 +267,7 @@ impl Builder<'_, '_> {
         }
         let read = || -> Res<Arc<[EdgeRow]>> {
             if self.doc.kind(ix) != 504 {
-                return Err(self.doc.bad(ix, "is not a list of edges"));
+                return Err(self.doc.unknown(ix, "a list of edges"));
             }
             let mut args = self.doc.open(ix)?;
             let row = |args: &mut Args<'_>| {
@@ -292,8 +296,9 @@ impl Builder<'_, '_> {
     fn new_edge(&mut self, list: Ix, position: usize) -> Res<KnownEdge> {
         let rows = self.edge_list(list)?;
         let row = rows.get(position).copied();
-        let row =
-            row.ok_or_else(|| self.doc.bad(list, format!("has no edge {}", position.saturating_add(1))))?;
+        let row = row.ok_or_else(|| {
+            self.doc.bad(list, ReadIssue::NotFound { what: "edge", number: position as i64 + 1 })
+        })?;
         let [start, end] = row.ends.map(|(list, position)| self.vertex(list, position));
         let (start, end) = (start?, end?);
         let by = self.by * matrix::of_entity(self.doc, list)?;
@@ -308,11 +313,11 @@ impl Builder<'_, '_> {
                     let id = self.build.push_edge(Edge { curve, range, start, end, source });
                     return Ok(KnownEdge { id, swapped });
                 }
-                None => "its curve has no length between its vertices".to_owned(),
+                None => Box::new(Issue::error(chordal_brep::Source::default(), ReadIssue::NoCurveBetween)),
             },
-            Err(bad) => bad.to_string(),
+            Err(bad) => bad.into_cause(source),
         };
-        self.doc.warn(row.curve, format!("the edge is taken for a straight line: {why}"));
+        self.doc.warn(row.curve, ReadIssue::EdgeStraightened { cause: why });
         Ok(KnownEdge { id: self.build.straight_edge(start, end, source), swapped: false })
     }
 }

@@ -8,7 +8,8 @@ use super::looks;
 use super::matrix;
 use super::surfaces::is_surface;
 use chordal_brep::{
-    Body, BodyKind, FaceId, LooseItem, LooseKind, Node, NodeId, Part, PartId, Shell, ShellId, Source,
+    Body, BodyKind, FaceId, LooseItem, LooseKind, Node, NodeId, Part, PartId, ReadIssue, Real, Shell,
+    ShellId, Source,
 };
 use chordal_nurbs::{DAffine3, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -213,7 +214,7 @@ impl Tree<'_, '_> {
         for &ix in list {
             if self.placed.nodes.len() >= MOST_NODES || depth > MAX_DEPTH {
                 if !std::mem::replace(&mut self.too_many, true) {
-                    self.doc.lose(ix, "too many instances; the rest is left out");
+                    self.doc.lose(ix, ReadIssue::AssemblyTooLarge { nodes: MOST_NODES });
                 }
                 return;
             }
@@ -244,10 +245,10 @@ impl Tree<'_, '_> {
         let (definition, shift) = (args.reference()?, args.point()?);
         let scale = args.optional_real().unwrap_or(1.0);
         if scale == 0.0 {
-            return Err(self.doc.bad(ix, "scales by zero"));
+            return Err(self.doc.bad(ix, ReadIssue::BadValue { what: "scale", value: Real(0.0) }));
         }
         if self.doc.kind(definition) != 308 {
-            return Err(self.doc.bad(ix, "is an instance of what is no subfigure"));
+            return Err(self.doc.unknown(definition, "a subfigure definition"));
         }
         let (name, content) = self.definition(definition)?;
         let local =
@@ -293,16 +294,17 @@ impl Builder<'_, '_> {
             }
             510 => return vec![self.lone_face(ix)],
             143 | 144 => return self.faces(ix),
-            108 if form != 1 => self.doc.warn(ix, "a plane without bounds belongs to no face; left out"),
-            190 | 192 | 194 => self.doc.warn(ix, "a surface without bounds belongs to no face; left out"),
+            108 if form != 1 => self.doc.warn(ix, ReadIssue::SurfaceIgnored),
+            190 | 192 | 194 => self.doc.warn(ix, ReadIssue::SurfaceIgnored),
             kind if is_surface(kind) && !dependent => return self.faces(ix),
             116 if !dependent => self.loose(ix, LooseKind::Point),
             106 if matches!(form, 1..=3) && !dependent => self.loose(ix, LooseKind::Point),
             kind if is_curve(kind, form) && !dependent => self.loose(ix, LooseKind::Wire),
             150..=184 | 430 => {
-                self.doc.lose(ix, "is a solid of a kind that this reader does not know; left out")
+                let what = format!("a solid of {}", self.doc.word(ix)).into();
+                self.doc.lose(ix, ReadIssue::Unsupported { what })
             }
-            416 => self.doc.lose(ix, "refers to another file; left out"),
+            416 => self.doc.lose(ix, ReadIssue::OtherFile),
             _ => {}
         }
         Vec::new()

@@ -30,7 +30,10 @@ pub(super) fn parse(bytes: &[u8], header: &str) -> Graph {
             Err(reason) => {
                 let source = reader.source();
                 let at = reader.at;
-                reader.graph.lose(source, format!("{reason} (byte {at}); what comes after is left out"));
+                reader
+                    .graph
+                    .notes
+                    .lose(source, format!("{reason} (byte {at}); what comes after is left out"));
                 break;
             }
         }
@@ -91,6 +94,7 @@ impl<'a> Reader<'a> {
                 if known.is_none() {
                     let source = self.source();
                     self.graph
+                        .notes
                         .lose(source, format!("USE {name}: no node of this name comes before; left out"));
                 }
                 return Ok(known);

@@ -54,7 +54,7 @@ fn solid(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
         _ => [named("bottomRadius", 1.0), named("height", 2.0), 1.0],
     };
     if !sizes.iter().all(|&s| s > 0.0) {
-        return walk.stage.lose(node.source(), format!("{}: it has no size; left out", node.kind));
+        return walk.stage.notes.lose(node.source(), format!("{}: it has no size; left out", node.kind));
     }
     let [a, b, _] = sizes;
     walk.stage.solid(&state.transform, &look, |part, look| match node.kind.as_str() {
@@ -96,7 +96,7 @@ fn polygons_of(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
     };
     if lost > 0 {
         let message = format!("{}: {lost} polygons without three corners of the list; left out", node.kind);
-        walk.stage.lose(node.source(), message);
+        walk.stage.notes.lose(node.source(), message);
     }
     let mut look = walk.look(node, state, name);
     look.flipped = state.shared.clockwise;

@@ -24,12 +24,12 @@ pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, state: &State, name: &str) -
     let made = net(graph, node, state, counts, &mut notes);
     let trims = trims(graph, state, &mut notes);
     for note in notes {
-        walk.stage.warn(node.source(), format!("{}: {note}", node.kind));
+        walk.stage.notes.warn(node.source(), format!("{}: {note}", node.kind));
     }
     match (made, trims) {
         (Ok(surface), Ok(trims)) => walk.stage.surface(&surface, &trims, &state.transform, &look),
         (Err(reason), _) | (_, Err(reason)) => {
-            walk.stage.failed(format!("{} {}: {reason}", node.source(), node.kind), &look);
+            walk.stage.failed(format!("{}: {reason}", node.kind).into(), &look);
         }
     }
     true

@@ -115,7 +115,7 @@ fn profiles_trim_the_surfaces_behind_them() {
         .collect();
     assert_eq!(loops, [4, 3]);
     assert_eq!(part.faces[1].loops.len(), 1);
-    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+    assert!(model.issues.is_empty(), "{:?}", model.issues);
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn faces_without_sense_fail_with_a_reason() {
         // Beside a sound one, such a face is a failed one.
         let model = read_bytes(format!("{text} Cube {{ }}").as_bytes(), "test").unwrap();
         let FaceGeometry::Failed(found) = &model.parts[0].faces[0].geometry else { panic!("{reason}") };
-        assert!(found.contains(reason), "{found}");
+        assert!(found.to_string().contains(reason), "{found}");
     }
 }
 
@@ -198,9 +198,9 @@ fn uses_of_uses_end() {
     }
     let model = read(&text);
     assert!(
-        model.warnings.iter().any(|w| w.lost && w.message.contains("used too often")),
+        model.issues.iter().any(|w| w.is_error() && w.kind.to_string().contains("used too often")),
         "{:?}",
-        model.warnings
+        model.issues
     );
     // A chain of single uses, far longer than any file's.
     let mut text = "DEF N0 Separator { Cube { } }".to_owned();
@@ -264,7 +264,7 @@ fn binary_patch() -> Vec<u8> {
 #[test]
 fn binary_files_hold_the_same_nodes() {
     let model = read_bytes(&binary_patch(), "test").unwrap();
-    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+    assert!(model.issues.is_empty(), "{:?}", model.issues);
     assert_eq!(model.schema, "Inventor V2.1 binary");
     // The separator is used twice: the patch is a part placed twice, and so is the cone's side.
     assert_near(&far_corners(&model), &[[2.0, 2.0, 1.0], [2.0, 2.0, 1.0]]);

@@ -55,6 +55,7 @@ impl Walk<'_> {
         if std::mem::replace(&mut self.active[ix as usize], true) {
             return self
                 .stage
+                .notes
                 .lose(node.source(), format!("{} is used inside itself; left out there", node.kind));
         }
         self.depth += 1;
@@ -133,7 +134,7 @@ impl Walk<'_> {
             "WWWInline" | "File" => {
                 let what =
                     format!("{} is not followed", [node.word("name"), node.kind.as_str()].join(" ").trim());
-                self.stage.lose(node.source(), what);
+                self.stage.notes.lose(node.source(), what);
             }
             kind if is_separator(kind) => {
                 let mut inner = state.clone();
@@ -176,7 +177,10 @@ impl Walk<'_> {
             match grid(node) {
                 Some(places) => places,
                 None => {
-                    return self.stage.lose(node.source(), "an array of more than 100000 copies; left out");
+                    return self
+                        .stage
+                        .notes
+                        .lose(node.source(), "an array of more than 100000 copies; left out");
                 }
             }
         };
@@ -189,7 +193,7 @@ impl Walk<'_> {
     /// Says something once for each kind of node.
     pub(super) fn note(&mut self, node: &Node, what: &str) {
         if self.noted.insert(node.kind.clone()) {
-            self.stage.warn(node.source(), format!("{}: {what}", node.kind));
+            self.stage.notes.warn(node.source(), format!("{}: {what}", node.kind));
         }
     }
 

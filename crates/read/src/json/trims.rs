@@ -1,8 +1,9 @@
 //! geomdl's trims: one curve or several in a container, as loops.
 
 use super::geomdl::ControlPoints;
+use crate::assemble::Notes;
 use crate::trimmed::{Piece, Role, TrimLoop};
-use chordal_brep::{Source, Warning};
+use chordal_brep::{ReadIssue, Source};
 use chordal_nurbs::{Curve2, DVec2, NurbsCurve2, Surface, UvBox};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -58,21 +59,20 @@ pub(super) struct Trim {
 /// Reads one trim.
 ///
 /// # Errors
-/// A sentence, where it makes no sense.
-pub(super) fn trim_loop(data: &Value, source: Source, warnings: &mut Vec<Warning>) -> Result<Trim, String> {
-    match TrimData::deserialize(data).map_err(|e| e.to_string())? {
+/// Where it makes no sense.
+pub(super) fn trim_loop(data: &Value, source: Source, notes: &Notes) -> Result<Trim, ReadIssue> {
+    match TrimData::deserialize(data).map_err(broken)? {
         TrimData::Container { data, reversed } => {
             let mut pieces = Vec::new();
             let mut senses = Vec::new();
             for member in &data {
-                let member = TrimData::deserialize(member).map_err(|e| e.to_string())?;
+                let member = TrimData::deserialize(member).map_err(broken)?;
                 let (curve, sense) = curve(member)?;
                 pieces.push(Piece::whole(curve));
                 senses.push(sense);
             }
             if turn_into_chain(&mut pieces) {
-                let message = "curves of a trim run against each other and were turned round".to_owned();
-                warnings.push(Warning { source, message, lost: false });
+                notes.warn(source, ReadIssue::EdgeTurned);
             }
             Ok(Trim { pieces, sense: reversed.or(senses.first().copied()).unwrap_or_default() })
         }
@@ -83,28 +83,38 @@ pub(super) fn trim_loop(data: &Value, source: Source, warnings: &mut Vec<Warning
     }
 }
 
-fn curve(data: TrimData) -> Result<(Curve2, Sense), String> {
+fn broken(error: serde_json::Error) -> ReadIssue {
+    ReadIssue::TextBroken { reason: error.to_string() }
+}
+
+fn curve(data: TrimData) -> Result<(Curve2, Sense), ReadIssue> {
     match data {
         TrimData::Spline { degree, knotvector, control_points, reversed } => {
             let curve =
                 NurbsCurve2::new(degree, knotvector, points(&control_points.points)?, control_points.weights);
-            Ok((Curve2::Nurbs(curve.map_err(|e| e.to_string())?), reversed))
+            Ok((Curve2::Nurbs(curve?), reversed))
         }
         TrimData::Freeform { points: list, reversed } => {
             let list = points(&list)?;
             if list.len() < 2 || !list.iter().all(|p| p.is_finite()) {
-                return Err("its points are fewer than two or not finite".into());
+                return Err(ReadIssue::TooFew {
+                    what: "finite points",
+                    found: list.iter().filter(|p| p.is_finite()).count(),
+                    least: 2,
+                });
             }
             Ok((Curve2::Polyline(list), reversed))
         }
-        TrimData::Container { .. } => Err("a container holds a container".into()),
+        TrimData::Container { .. } => {
+            Err(ReadIssue::Unsupported { what: "a container in a container".into() })
+        }
     }
 }
 
-fn points(list: &[Vec<f64>]) -> Result<Vec<DVec2>, String> {
+fn points(list: &[Vec<f64>]) -> Result<Vec<DVec2>, ReadIssue> {
     let point = |p: &Vec<f64>| match p[..] {
         [u, v, ..] => Ok(DVec2::new(u, v)),
-        _ => Err(format!("a point has {} coordinates", p.len())),
+        _ => Err(ReadIssue::TooFew { what: "coordinates of a point", found: p.len(), least: 2 }),
     };
     list.iter().map(point).collect()
 }
@@ -130,20 +140,13 @@ fn turn_into_chain(pieces: &mut [Piece]) -> bool {
 
 impl Trim {
     /// The loop. Where its two ends lie on the border of the domain, it is closed along the shorter way round that.
-    pub(super) fn closed(
-        mut self,
-        surface: &Surface,
-        source: Source,
-        warnings: &mut Vec<Warning>,
-    ) -> TrimLoop {
+    pub(super) fn closed(mut self, surface: &Surface, source: Source, notes: &Notes) -> TrimLoop {
         let ends = self.pieces.first().zip(self.pieces.last()).map(|(a, b)| (b.at(1.0), a.at(0.0)));
         if let Some((from, to)) = ends
             && let Some(way) = border_way(surface.domain(), from, to)
         {
             self.pieces.extend(way.windows(2).map(|pair| Piece::line(pair[0], pair[1])));
-            let message =
-                "an open trim was closed along the border of its surface, the shorter way".to_owned();
-            warnings.push(Warning { source, message, lost: false });
+            notes.warn(source, ReadIssue::TrimClosedAlongBorder);
         }
         let role = match self.sense {
             Sense::Forward => Role::Hole,

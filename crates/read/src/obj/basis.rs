@@ -4,6 +4,7 @@
 //! segments are polynomials of their own; each becomes a Bézier segment by a matrix that acts on its control points, and
 //! the segments a B-spline whose inner knots have multiplicity n (n + 1 where two segments do not meet).
 
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DVec4, NurbsError};
 
 /// The kinds of basis.
@@ -44,24 +45,31 @@ impl Direction<'_> {
     ///
     /// # Errors
     /// A sentence, where degree, step or parameters make no sense.
-    pub(super) fn control_points(&self) -> Result<usize, String> {
+    pub(super) fn control_points(&self) -> Result<usize, ReadIssue> {
         let (n, given) = (self.degree, self.parameters.len());
         if !(1..=MAX_DEGREE).contains(&n) {
-            return Err(NurbsError::Degree(n).to_string());
+            return Err(NurbsError::Degree(n).into());
         }
-        let few = || format!("{given} parameters are too few for degree {n}");
+        let few = || ReadIssue::TooFew { what: "parameters", found: given, least: n + 2 };
         let segments = given.checked_sub(1).filter(|&s| s > 0).ok_or_else(few);
         match self.basis {
             Basis::Bspline => given.checked_sub(n + 1).filter(|&points| points > n).ok_or_else(few),
             Basis::Bezier => Ok(segments? * n + 1),
-            Basis::Cardinal if n != 3 => Err(format!("a Cardinal spline of degree {n} (they are cubic)")),
+            Basis::Cardinal if n != 3 => {
+                Err(ReadIssue::BadValue { what: "Cardinal spline degree", value: Real(n as f64) })
+            }
             Basis::Cardinal => Ok(segments? + 3),
             Basis::Taylor => Ok(segments? * (n + 1)),
-            Basis::Matrix if self.step == 0 => Err("a basis matrix without a step".into()),
+            Basis::Matrix if self.step == 0 => {
+                Err(ReadIssue::BadValue { what: "basis matrix step", value: Real(0.0) })
+            }
             Basis::Matrix => (segments? - 1)
                 .checked_mul(self.step)
                 .and_then(|points| points.checked_add(n + 1))
-                .ok_or_else(|| format!("a step of {}", self.step)),
+                .ok_or_else(|| ReadIssue::BadValue {
+                    what: "basis matrix step",
+                    value: Real(self.step as f64),
+                }),
         }
     }
 
@@ -69,16 +77,16 @@ impl Direction<'_> {
     ///
     /// # Errors
     /// A sentence, where the numbers do not fit together.
-    pub(super) fn spline(&self, rows: Vec<Vec<DVec4>>) -> Result<Spline, String> {
+    pub(super) fn spline(&self, rows: Vec<Vec<DVec4>>) -> Result<Spline, ReadIssue> {
         let expected = self.control_points()?;
         if rows.len() != expected {
-            return Err(format!("{} control points in a direction that needs {expected}", rows.len()));
+            return Err(ReadIssue::Count { what: "control points", found: rows.len(), expected });
         }
         if self.basis == Basis::Bspline {
             return Ok(Spline { knots: self.parameters.to_vec(), rows });
         }
         if let Some(pair) = self.parameters.windows(2).find(|pair| pair[0] >= pair[1]) {
-            return Err(format!("parameter {} is followed by {}", pair[0], pair[1]));
+            return Err(ReadIssue::EmptyRange { start: Real(pair[0]), end: Real(pair[1]) });
         }
         let n = self.degree;
         let to_bezier = self.to_bezier()?;
@@ -109,7 +117,7 @@ impl Direction<'_> {
     }
 
     /// Row i: how Bézier point i is made from a segment's control points.
-    fn to_bezier(&self) -> Result<Vec<Vec<f64>>, String> {
+    fn to_bezier(&self) -> Result<Vec<Vec<f64>>, ReadIssue> {
         let n = self.degree;
         let sixth = 1.0 / 6.0;
         Ok(match self.basis {
@@ -125,11 +133,11 @@ impl Direction<'_> {
             Basis::Taylor => from_powers(n),
             Basis::Matrix => {
                 if self.matrix.len() != (n + 1) * (n + 1) {
-                    return Err(format!(
-                        "a basis matrix of {} numbers for degree {n}, which needs {}",
-                        self.matrix.len(),
-                        (n + 1) * (n + 1)
-                    ));
+                    return Err(ReadIssue::Count {
+                        what: "numbers of the basis matrix",
+                        found: self.matrix.len(),
+                        expected: (n + 1) * (n + 1),
+                    });
                 }
                 // Coefficient of t^k from control point j is element (j, k).
                 let element = |i: usize, j: usize, powers: &[Vec<f64>]| {

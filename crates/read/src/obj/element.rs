@@ -2,7 +2,7 @@
 
 use super::basis::{Basis, Direction, Spline};
 use crate::trimmed::{Piece, Role, TrimLoop};
-use chordal_brep::Source;
+use chordal_brep::{ReadIssue, Real, Source};
 use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4, NurbsCurve2, NurbsSurface, Range, Surface, UvBox};
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ pub(super) struct CurveUse {
 #[derive(Clone, Debug)]
 pub(super) struct LoopUse {
     pub hole: bool,
-    pub uses: Result<Vec<CurveUse>, String>,
+    pub uses: Result<Vec<CurveUse>, ReadIssue>,
     pub source: Source,
 }
 
@@ -46,9 +46,9 @@ pub(super) enum Kind {
     /// `curv`: loose.
     Curve,
     /// `curv2`: its control points in parameter space with their weights.
-    Curve2(Result<Vec<DVec3>, String>),
+    Curve2(Result<Vec<DVec3>, ReadIssue>),
     /// `surf`: its range, and its control points with their weights.
-    Surface { range: Option<UvBox>, points: Result<Vec<DVec4>, String> },
+    Surface { range: Option<UvBox>, points: Result<Vec<DVec4>, ReadIssue> },
 }
 
 /// An element whose body is being read.
@@ -66,7 +66,7 @@ impl Element {
     ///
     /// # Errors
     /// A sentence, where it makes no sense.
-    pub(super) fn curve2(&mut self, points: &[DVec3]) -> Result<Curve2, String> {
+    pub(super) fn curve2(&mut self, points: &[DVec3]) -> Result<Curve2, ReadIssue> {
         if self.parameters[0].is_empty() {
             self.parameters[0] = self.default_breaks(points.len())?;
         }
@@ -76,7 +76,7 @@ impl Element {
         let (points, weights) = self.projected(points);
         let points = points.into_iter().map(DVec3::truncate).collect();
         let curve = NurbsCurve2::new(self.attributes.degree[0], spline.knots, points, weights);
-        curve.map(Curve2::Nurbs).map_err(|e| e.to_string())
+        curve.map(Curve2::Nurbs).map_err(ReadIssue::from)
     }
 
     /// The surface of a `surf` element over its own range; what was guessed is told to `warn`.
@@ -87,22 +87,26 @@ impl Element {
         &mut self,
         range: Option<UvBox>,
         points: &[DVec4],
-        warn: &mut dyn FnMut(String),
-    ) -> Result<Surface, String> {
-        let range = range.ok_or("its parameter range is not four numbers")?;
+        warn: &mut dyn FnMut(ReadIssue),
+    ) -> Result<Surface, ReadIssue> {
+        let range = range.ok_or(ReadIssue::Missing { what: "parameter range of four numbers" })?;
         for (axis, ends) in [range.u(), range.v()].into_iter().enumerate() {
             if self.parameters[axis].is_empty() {
                 if self.attributes.basis == Some(Basis::Bspline) {
-                    return Err(format!("it has no knots in {}", ["u", "v"][axis]));
+                    return Err(ReadIssue::Missing { what: ["knots along u", "knots along v"][axis] });
                 }
-                warn(format!("it has no parameters in {}: one segment is meant", ["u", "v"][axis]));
+                warn(ReadIssue::OneSegment { direction: ["u", "v"][axis] });
                 self.parameters[axis] = vec![ends.start, ends.end];
             }
         }
         let counts = [self.direction(0)?.control_points()?, self.direction(1)?.control_points()?];
         if counts[0].checked_mul(counts[1]) != Some(points.len()) {
             let [u, v] = counts;
-            return Err(format!("{} control points where its parameters need {u} × {v}", points.len()));
+            return Err(ReadIssue::Count {
+                what: "control points",
+                found: points.len(),
+                expected: u.saturating_mul(v),
+            });
         }
         // Files run fastest along u.
         let across = |i: usize| (0..counts[1]).map(|j| points[j * counts[0] + i]).collect();
@@ -113,7 +117,7 @@ impl Element {
         let (points, weights) = self.projected(net);
         let degree = self.attributes.degree;
         let nurbs = NurbsSurface::new(degree, along_u.knots, along_v.knots, points, weights)
-            .map_err(|e| e.to_string())?;
+            .map_err(ReadIssue::from)?;
         Ok(Surface::Nurbs(restricted(nurbs, range, warn)?))
     }
 
@@ -123,20 +127,20 @@ impl Element {
     /// A sentence, where it refers to a curve that is not there.
     pub(super) fn trim(
         trim: &LoopUse,
-        curves: &[Result<Curve2, String>],
-        warn: &mut dyn FnMut(String),
-    ) -> Result<TrimLoop, String> {
+        curves: &[Result<Curve2, ReadIssue>],
+        warn: &mut dyn FnMut(ReadIssue),
+    ) -> Result<TrimLoop, ReadIssue> {
         let mut pieces = Vec::new();
-        for used in trim.uses.as_ref().map_err(String::clone)? {
+        for used in trim.uses.as_ref().map_err(ReadIssue::clone)? {
             pieces.push(piece(used, curves, warn)?);
         }
         let role = if trim.hole { Role::Hole } else { Role::Outer };
         Ok(TrimLoop { pieces, role, source: trim.source })
     }
 
-    fn direction(&self, axis: usize) -> Result<Direction<'_>, String> {
+    fn direction(&self, axis: usize) -> Result<Direction<'_>, ReadIssue> {
         Ok(Direction {
-            basis: self.attributes.basis.ok_or("no cstype statement comes before it")?,
+            basis: self.attributes.basis.ok_or(ReadIssue::Missing { what: "cstype statement before it" })?,
             degree: self.attributes.degree[axis],
             parameters: &self.parameters[axis],
             step: self.attributes.step[axis],
@@ -145,20 +149,20 @@ impl Element {
     }
 
     /// As a B-spline along one direction; in homogeneous coordinates, where the curve is polynomial.
-    fn along(&self, axis: usize, rows: Vec<Vec<DVec4>>) -> Result<Spline, String> {
+    fn along(&self, axis: usize, rows: Vec<Vec<DVec4>>) -> Result<Spline, ReadIssue> {
         self.direction(axis)?.spline(rows)
     }
 
     /// One breakpoint more than there are segments.
-    fn default_breaks(&self, points: usize) -> Result<Vec<f64>, String> {
+    fn default_breaks(&self, points: usize) -> Result<Vec<f64>, ReadIssue> {
         let n = self.attributes.degree[0];
         let segments = match self.attributes.basis {
             Some(Basis::Bezier) => points.saturating_sub(1) / n.max(1),
             Some(Basis::Cardinal) => points.saturating_sub(3),
             Some(Basis::Taylor) => points / (n + 1),
             Some(Basis::Matrix) => points.saturating_sub(n + 1) / self.attributes.step[0].max(1) + 1,
-            Some(Basis::Bspline) => return Err("it has no knots".into()),
-            None => return Err("no cstype statement comes before it".into()),
+            Some(Basis::Bspline) => return Err(ReadIssue::Missing { what: "knots" }),
+            None => return Err(ReadIssue::Missing { what: "cstype statement before it" }),
         };
         Ok((0..=segments).map(|s| s as f64).collect())
     }
@@ -190,45 +194,48 @@ const ROUNDING: f64 = 1e-9;
 fn restricted(
     nurbs: NurbsSurface,
     range: UvBox,
-    warn: &mut dyn FnMut(String),
-) -> Result<NurbsSurface, String> {
+    warn: &mut dyn FnMut(ReadIssue),
+) -> Result<NurbsSurface, ReadIssue> {
     let domain = nurbs.domain();
     let cut = UvBox::new(domain.clamp(range.min), domain.clamp(range.max));
     let size = domain.size();
     let beyond = ((range.min - cut.min).abs() / size).max((range.max - cut.max).abs() / size).max_element();
     if beyond > ROUNDING {
-        let (r, d) = (range, domain);
-        warn(format!("its range {} {} is cut to its domain {} {}", r.min, r.max, d.min, d.max));
+        let axis = if (range.u().start, range.u().end) == (cut.u().start, cut.u().end) {
+            range.v()
+        } else {
+            range.u()
+        };
+        warn(ReadIssue::RangeCut { start: Real(axis.start), end: Real(axis.end) });
     }
     if (cut.size() / size).min_element() <= ROUNDING {
-        return Err(format!("its range {} {} spans none of its domain", range.min, range.max));
+        return Err(ReadIssue::OutsideDomain);
     }
-    if cut == domain { Ok(nurbs) } else { nurbs.piece(cut).map_err(|e| e.to_string()) }
+    if cut == domain { Ok(nurbs) } else { nurbs.piece(cut).map_err(ReadIssue::from) }
 }
 
 /// A curve over a range; a greater start runs it backwards.
 fn piece(
     used: &CurveUse,
-    curves: &[Result<Curve2, String>],
-    warn: &mut dyn FnMut(String),
-) -> Result<Piece, String> {
+    curves: &[Result<Curve2, ReadIssue>],
+    warn: &mut dyn FnMut(ReadIssue),
+) -> Result<Piece, ReadIssue> {
     let number = used.curve;
     let curve = match number.checked_sub(1).and_then(|i| curves.get(i)) {
         Some(Ok(curve)) => curve,
-        Some(Err(why)) => return Err(format!("its trim uses curve {number}: {why}")),
-        None => {
-            return Err(format!("its trim uses curve {number}, and there are {} before it", curves.len()));
-        }
+        Some(Err(why)) => return Err(why.clone().within("trim curve", number)),
+        None => return Err(ReadIssue::NotFound { what: "trim curve", number: number as i64 }),
     };
     let domain = curve.domain();
     let (a, b) = (domain.clamp(used.start), domain.clamp(used.end));
     if (a - used.start).abs().max((b - used.end).abs()) > ROUNDING * domain.length() {
-        let (s, e, d) = (used.start, used.end, domain);
-        warn(format!("its trim uses curve {number} over {s}..{e}, cut to its domain {}..{}", d.start, d.end));
+        let cut = ReadIssue::RangeCut { start: Real(used.start), end: Real(used.end) };
+        warn(cut.within("trim curve", number));
     }
     let range = Range::new(a.min(b), a.max(b));
     if range.length() <= ROUNDING * domain.length() {
-        return Err(format!("its trim uses curve {number} over {}..{}", used.start, used.end));
+        return Err(ReadIssue::EmptyRange { start: Real(used.start), end: Real(used.end) }
+            .within("trim curve", number));
     }
     Ok(Piece { curve: Arc::new(curve.clone()), range, forward: used.start <= used.end })
 }

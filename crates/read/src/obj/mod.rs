@@ -90,9 +90,9 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let read = reader::read(text);
     let part = read.part;
     if part.faces.is_empty() && part.tessellated.is_empty() && part.loose.is_empty() {
-        let first = read.warnings.first().map(|warning| format!(" ({warning})")).unwrap_or_default();
+        let first = read.issues.first().map(|issue| format!(" ({issue})")).unwrap_or_default();
         let problem = format!("it holds no surface, no polygon and no curve{first}");
         return Err(ReadError::Unreadable { name: name.to_owned(), format: "OBJ", problem });
     }
-    Ok(flat::model(name, "Wavefront OBJ".to_owned(), LengthUnit::unstated(), part, read.warnings))
+    Ok(flat::model(name, "Wavefront OBJ".to_owned(), LengthUnit::unstated(), part, read.issues))
 }

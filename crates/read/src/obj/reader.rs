@@ -4,9 +4,9 @@ use super::basis::Basis;
 use super::element::{Attributes, CurveUse, Element, Kind, LoopUse, homogeneous, homogeneous2};
 use super::lines::{Statement, Statements, number, position, text};
 use super::polygons::Polygons;
-use crate::build::Notes;
+use crate::assemble::Notes;
 use crate::trimmed::{Look, add_body, add_faces, add_failed};
-use chordal_brep::{BodyKind, FaceId, LooseItem, LooseKind, Part, Source, Warning};
+use chordal_brep::{BodyKind, FaceId, Issue, LooseItem, LooseKind, Part, ReadIssue, Source};
 use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4, UvBox};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// A file's part and what was noted on the way.
 pub(super) struct Read {
     pub part: Part,
-    pub warnings: Vec<Warning>,
+    pub issues: Vec<Issue>,
 }
 
 /// A vertex and its weight; not finite where its statement made no sense.
@@ -30,7 +30,7 @@ struct Reader {
     attributes: Attributes,
     /// The element whose body is being read.
     open: Option<Element>,
-    curves: Vec<Result<Curve2, String>>,
+    curves: Vec<Result<Curve2, ReadIssue>>,
     surfaces: usize,
     connections: usize,
     object: String,
@@ -83,7 +83,13 @@ impl Reader {
             Some(&[x, y, z] | &[x, y, z, _, _, _] | &[x, y, z, _, _, _, _]) => (DVec3::new(x, y, z), 1.0),
             Some(&[x, y, z, w]) => (DVec3::new(x, y, z), w),
             _ => {
-                self.notes.warn(source, "a vertex is not three or four numbers");
+                self.notes.warn(
+                    source,
+                    ReadIssue::Expected {
+                        expected: "three or four numbers of a vertex",
+                        found: joined(words),
+                    },
+                );
                 (DVec3::NAN, 1.0)
             }
         };
@@ -98,7 +104,13 @@ impl Reader {
             Some(&[u, v]) => (DVec2::new(u, v), 1.0),
             Some(&[u, v, w]) => (DVec2::new(u, v), w),
             _ => {
-                self.notes.warn(source, "a parameter vertex is not one to three numbers");
+                self.notes.warn(
+                    source,
+                    ReadIssue::Expected {
+                        expected: "one to three numbers of a parameter vertex",
+                        found: joined(words),
+                    },
+                );
                 (DVec2::NAN, 1.0)
             }
         };
@@ -134,8 +146,7 @@ impl Reader {
             }
         };
         if !understood {
-            let message = format!("the {} statement makes no sense", text(keyword));
-            self.notes.warn(source, message);
+            self.notes.warn(source, ReadIssue::BadStatement { keyword: text(keyword).to_string() });
         }
     }
 
@@ -146,8 +157,10 @@ impl Reader {
                 let name = if self.group.is_empty() { &self.object } else { &self.group };
                 self.polygons.add(&corners, &self.points, name, source);
             }
-            Some(_) => self.notes.lose(source, "a polygon has fewer than three corners"),
-            None => self.notes.lose(source, "a polygon refers to a vertex that is not there"),
+            Some(_) => self
+                .notes
+                .lose(source, ReadIssue::TooFew { what: "polygon corners", found: words.len(), least: 3 }),
+            None => self.notes.lose(source, ReadIssue::PolygonsLost { polygons: 1 }),
         }
     }
 
@@ -159,7 +172,7 @@ impl Reader {
 
     fn element(&mut self, keyword: &[u8], words: &[&[u8]], source: Source) {
         if let Some(open) = self.open.take() {
-            self.notes.warn(open.source, "the element has no end statement");
+            self.notes.warn(open.source, ReadIssue::Missing { what: "end statement" });
             self.close(open);
         }
         let rational = self.attributes.rational;
@@ -186,7 +199,7 @@ impl Reader {
         });
     }
 
-    fn parameter_points(&self, words: &[&[u8]], rational: bool) -> Result<Vec<DVec3>, String> {
+    fn parameter_points(&self, words: &[&[u8]], rational: bool) -> Result<Vec<DVec3>, ReadIssue> {
         let point = |word: &&[u8]| {
             let at = position(word, self.parameters.len());
             let (p, w) = at.map(|at| self.parameters[at]).ok_or_else(|| missing("vp", word))?;
@@ -195,15 +208,14 @@ impl Reader {
         words.iter().map(point).collect()
     }
 
-    fn control_point(&self, word: &[u8], rational: bool) -> Result<DVec4, String> {
+    fn control_point(&self, word: &[u8], rational: bool) -> Result<DVec4, ReadIssue> {
         let at = self.point_at(word).ok_or_else(|| missing("v", word))?;
         Ok(homogeneous(self.points[at], self.weights[at], rational))
     }
 
     fn body(&mut self, keyword: &[u8], words: &[&[u8]], source: Source) {
         let Some(element) = &mut self.open else {
-            let message = format!("a {} statement outside of any curve or surface", text(keyword));
-            self.notes.warn(source, message);
+            self.notes.warn(source, ReadIssue::MisplacedStatement { keyword: text(keyword).to_string() });
             return;
         };
         match keyword {
@@ -212,7 +224,7 @@ impl Reader {
                 match (words.first(), numbers) {
                     (Some(&b"u"), Some(numbers)) => element.parameters[0] = numbers,
                     (Some(&b"v"), Some(numbers)) => element.parameters[1] = numbers,
-                    _ => self.notes.warn(source, "the parm statement makes no sense"),
+                    _ => self.notes.warn(source, ReadIssue::BadStatement { keyword: "parm".to_owned() }),
                 }
             }
             b"trim" | b"hole" => {
@@ -235,9 +247,8 @@ impl Reader {
             Kind::Curve2(points) => {
                 let curve = points.and_then(|points| element.curve2(&points));
                 if let Err(why) = &curve {
-                    let message =
-                        format!("the parameter curve {} cannot be used: {why}", self.curves.len() + 1);
-                    self.notes.warn(element.source, message);
+                    let issue = why.clone().within("parameter curve", self.curves.len() + 1);
+                    self.notes.warn(element.source, issue);
                 }
                 self.curves.push(curve);
             }
@@ -245,22 +256,20 @@ impl Reader {
         }
     }
 
-    fn surface(&mut self, mut element: Element, range: Option<UvBox>, points: Result<Vec<DVec4>, String>) {
+    fn surface(&mut self, mut element: Element, range: Option<UvBox>, points: Result<Vec<DVec4>, ReadIssue>) {
         self.surfaces += 1;
         let source = element.source;
         let name = if self.group.is_empty() { self.object.clone() } else { self.group.clone() };
         let look = Look { name, layer: layer(&self.material), source, ..Look::default() };
         let mut guessed = Vec::new();
-        let mut warn = |message: String| guessed.push(message);
+        let mut warn = |issue: ReadIssue| guessed.push(issue);
         let made = points.and_then(|points| element.surface(range, &points, &mut warn));
-        let trims: Result<Vec<_>, String> =
+        let trims: Result<Vec<_>, ReadIssue> =
             element.loops.iter().map(|trim| Element::trim(trim, &self.curves, &mut warn)).collect();
-        guessed.into_iter().for_each(|message| self.notes.warn(source, message));
+        guessed.into_iter().for_each(|issue| self.notes.warn(source, issue));
         let faces = match (made, trims) {
             (Ok(surface), Ok(trims)) => {
-                let mut warnings = Vec::new();
-                let faces = add_faces(&mut self.part, &Arc::new(surface), &trims, &look, &mut warnings);
-                warnings.into_iter().for_each(|w| self.notes.warn(w.source, w.message));
+                let faces = add_faces(&mut self.part, &Arc::new(surface), &trims, &look, &self.notes);
                 faces
             }
             (Err(reason), _) | (_, Err(reason)) => vec![add_failed(&mut self.part, reason, &look)],
@@ -304,7 +313,7 @@ impl Reader {
 
     fn finish(mut self) -> Read {
         if let Some(open) = self.open.take() {
-            self.notes.warn(open.source, "the file ends within the element");
+            self.notes.warn(open.source, ReadIssue::EntityTruncated);
             self.close(open);
         }
         self.part.tessellated.extend(self.polygons.take());
@@ -312,32 +321,31 @@ impl Reader {
             add_body(&mut self.part, faces, BodyKind::FaceSet, &Look { name, source, ..Look::default() });
         }
         if self.connections > 0 {
-            let message = format!(
-                "{} con statements say which surfaces meet; their edges are not joined by them",
-                self.connections
-            );
-            self.notes.warn(Source::default(), message);
+            let (keyword, statements) = ("con".to_owned(), self.connections);
+            self.notes.warn(Source::default(), ReadIssue::StatementsIgnored { keyword, statements });
         }
         for (keyword, line, count) in std::mem::take(&mut self.passed) {
             let source = Source { entity: 0, line };
             match keyword.as_str() {
-                "call" => {
-                    self.notes.lose(source, format!("{count} call statements: other files are not read"))
-                }
-                "csh" => self.notes.warn(source, format!("{count} csh statements: commands are never run")),
+                "call" => self.notes.lose(source, ReadIssue::OtherFile),
+                "csh" => self.notes.warn(source, ReadIssue::ProgramIgnored { what: "csh statements" }),
                 "bsp" | "bzp" | "cdc" | "cdp" | "res" => {
-                    let message = format!("{count} {keyword} statements of version 2 are left out");
-                    self.notes.lose(source, message);
+                    self.notes.lose(source, ReadIssue::StatementsIgnored { keyword, statements: count });
                 }
-                _ => self.notes.warn(source, format!("{count} unknown statements {keyword:?} are left out")),
+                _ => self.notes.warn(source, ReadIssue::StatementsIgnored { keyword, statements: count }),
             }
         }
-        Read { part: self.part, warnings: self.notes.take() }
+        Read { part: self.part, issues: self.notes.take() }
     }
 }
 
-fn missing(what: &str, word: &[u8]) -> String {
-    format!("it refers to {what} {}, which is not there", text(&word[..word.len().min(40)]))
+fn missing(what: &'static str, word: &[u8]) -> ReadIssue {
+    ReadIssue::NameNotFound { what, name: text(&word[..word.len().min(40)]).to_string() }
+}
+
+/// The words of a statement, for messages.
+fn joined(words: &[&[u8]]) -> String {
+    words.iter().map(|word| text(word)).collect::<Vec<_>>().join(" ").chars().take(40).collect()
 }
 
 fn layer(material: &str) -> Option<String> {
@@ -357,7 +365,7 @@ fn pair(words: &[&[u8]], into: &mut [usize; 2]) -> bool {
 }
 
 /// Triples of a range and a curve.
-fn curve_uses(words: &[&[u8]]) -> Result<Vec<CurveUse>, String> {
+fn curve_uses(words: &[&[u8]]) -> Result<Vec<CurveUse>, ReadIssue> {
     let one = |triple: &[&[u8]]| {
         let [start, end, curve] = triple else { return None };
         let curve = std::str::from_utf8(curve).ok()?.parse().ok()?;
@@ -365,5 +373,5 @@ fn curve_uses(words: &[&[u8]]) -> Result<Vec<CurveUse>, String> {
     };
     let uses: Option<Vec<CurveUse>> = words.chunks(3).map(one).collect();
     uses.filter(|uses| !uses.is_empty())
-        .ok_or_else(|| "its trim is not a list of ranges and curves".to_owned())
+        .ok_or_else(|| ReadIssue::Missing { what: "list of ranges and curves in the trim" })
 }

@@ -5,10 +5,10 @@ use super::object::{Class, object};
 use super::surfaces::{RhinoSurface, surface};
 use super::tables::{Attributes, Layer, attributes, layers, units};
 use super::{MAGIC, brep, build, curves, extrusion, legacy, mesh};
-use crate::build::{Notes, PartBuilder};
+use crate::assemble::{Notes, PartBuilder};
 use crate::flat::LengthUnit;
 use crate::trimmed::{Look, Piece, Role, TrimLoop, add_body, add_faces, add_failed};
-use chordal_brep::{BodyKind, LooseItem, LooseKind, Part, Source, Warning};
+use chordal_brep::{BodyKind, Issue, LooseItem, LooseKind, Part, Source};
 use chordal_nurbs::DVec2;
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ const END_OF_TABLE: u32 = 0xffff_ffff;
 pub(super) struct Read {
     pub part: Part,
     pub unit: LengthUnit,
-    pub warnings: Vec<Warning>,
+    pub issues: Vec<Issue>,
 }
 
 /// What is known of the archive so far.
@@ -61,8 +61,8 @@ pub(super) fn read(whole: &[u8], version: u32) -> Read {
         let message = format!("{} placements of blocks are left out: blocks are not read", reader.blocks);
         reader.notes.lose(Source::default(), message);
     }
-    let warnings = reader.notes.take();
-    Read { part: reader.builder.finish(), unit: reader.unit, warnings }
+    let issues = reader.notes.take();
+    Read { part: reader.builder.finish(), unit: reader.unit, issues }
 }
 
 impl<'a> Reader<'a> {
@@ -199,10 +199,8 @@ impl<'a> Reader<'a> {
                 let surface = Arc::new(found.surface.clone());
                 let trims =
                     if surface.domain().is_finite() { Vec::new() } else { vec![border(&found, look.source)] };
-                let mut warnings = Vec::new();
-                let faces = add_faces(part, &surface, &trims, look, &mut warnings);
+                let faces = add_faces(part, &surface, &trims, look, &self.notes);
                 add_body(part, faces, BodyKind::Sheet, look);
-                warnings.into_iter().for_each(|w| self.notes.warn(w.source, w.message));
             }
             Err(why) => _ = add_failed(part, why, look),
         }

@@ -4,11 +4,12 @@ use super::brep::{CurveUse, RawBrep, RawFace, RawTrim};
 use super::bytes::Res;
 use super::curves::{RhinoCurve, Stops};
 use super::surfaces::RhinoSurface;
-use crate::build::Notes;
-use crate::build::PartBuilder;
+use crate::assemble::Notes;
+use crate::assemble::PartBuilder;
 use crate::trimmed::Look;
 use chordal_brep::{
-    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, Pcurve, Shell, ShellId, VertexId,
+    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Issue, Loop, Pcurve, ReadIssue, Shell,
+    ShellId, VertexId,
 };
 use chordal_nurbs::{Curve, Curve2, DVec3, Range};
 use std::sync::Arc;
@@ -90,7 +91,8 @@ impl Maker<'_> {
                 (FaceGeometry::Surface(Arc::new(surface.surface.clone())), same_sense, loops)
             }
             Err(why) => {
-                (FaceGeometry::Failed(format!("face {place} of the object: {why}")), true, Vec::new())
+                let reason = ReadIssue::from(format!("face {place} of the object: {why}"));
+                (FaceGeometry::Failed(Issue::error(self.look.source, reason)), true, Vec::new())
             }
         };
         let id = FaceId::from(self.builder.part.faces.len());

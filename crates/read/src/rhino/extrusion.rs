@@ -5,7 +5,7 @@
 
 use super::bytes::{ANONYMOUS, Bytes, Res};
 use super::curves::{Piece, RhinoCurve, Shape, curve_object, profiles};
-use crate::build::PartBuilder;
+use crate::assemble::PartBuilder;
 use crate::trimmed::Look;
 use chordal_brep::{
     Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, Shell, ShellId, VertexId,

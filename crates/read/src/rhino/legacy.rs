@@ -7,7 +7,7 @@ use super::bytes::{Bytes, Res};
 use super::curves::completed;
 use super::tables::length_unit;
 use crate::Winding;
-use crate::build::Notes;
+use crate::assemble::Notes;
 use crate::flat::LengthUnit;
 use crate::trimmed::{Look, Piece, Role, TrimLoop, add_body, add_faces, add_failed};
 use chordal_brep::{BodyKind, FaceId, LooseItem, LooseKind, Part, Source};
@@ -113,9 +113,7 @@ fn face(body: Bytes, part: &mut Part, look: &Look, notes: &Notes) -> Vec<FaceId>
             let trims: Vec<TrimLoop> =
                 trims.into_iter().map(|trim| TrimLoop { source: look.source, ..trim }).collect();
             let look = Look { flipped, ..look.clone() };
-            let mut warnings = Vec::new();
-            let faces = add_faces(part, &Arc::new(Surface::Nurbs(surface)), &trims, &look, &mut warnings);
-            warnings.into_iter().for_each(|w| notes.warn(w.source, w.message));
+            let faces = add_faces(part, &Arc::new(Surface::Nurbs(surface)), &trims, &look, notes);
             faces
         }
         Err(why) => vec![add_failed(part, why, look)],

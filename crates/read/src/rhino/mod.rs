@@ -41,9 +41,9 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let read = archive::read(bytes, version);
     let part = read.part;
     if part.faces.is_empty() && part.tessellated.is_empty() && part.loose.is_empty() {
-        let first = read.warnings.first().map(|warning| format!(" ({warning})")).unwrap_or_default();
+        let first = read.issues.first().map(|issue| format!(" ({issue})")).unwrap_or_default();
         return Err(bad(format!("it holds no surface, no mesh and no curve{first}")));
     }
     let schema = format!("Rhino 3DM version {}", if version >= 50 { version / 10 } else { version });
-    Ok(flat::model(name, schema, read.unit, part, read.warnings))
+    Ok(flat::model(name, schema, read.unit, part, read.issues))
 }

@@ -1,15 +1,13 @@
 //! Nodes with named fields, whatever the file's encoding.
 
 use crate::Winding;
-use chordal_brep::{Source, Warning};
+use crate::assemble::Notes;
+use chordal_brep::Source;
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 
 /// The position of a node in its graph.
 pub(crate) type NodeIx = u32;
-
-/// More warnings than this are counted, not kept.
-const MAX_WARNINGS: usize = 10_000;
 
 /// The value of a field as far as the encoding tells; the reader of the field knows the type.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,11 +166,9 @@ pub(crate) struct Graph {
     pub millimetres: Option<f64>,
     /// Radians of one unit of angle.
     pub radians: Option<f64>,
-    pub warnings: Vec<Warning>,
+    pub notes: Notes,
     /// The convention for trimming loops.
     pub winding: Winding,
-    dropped: usize,
-    dropped_lost: bool,
 }
 
 impl Graph {
@@ -208,34 +204,5 @@ impl Graph {
             let mut all = named.flatten().chain(&node.children).copied();
             all.find(|&child| kinds.contains(&self.node(child).kind.as_str()))
         })
-    }
-
-    /// Notes something that was repaired or is not used.
-    pub(crate) fn warn(&mut self, source: Source, message: impl Into<String>) {
-        self.push_warning(Warning { source, message: message.into(), lost: false });
-    }
-
-    /// Notes something whose shape will be missing from the model.
-    pub(crate) fn lose(&mut self, source: Source, message: impl Into<String>) {
-        self.push_warning(Warning { source, message: message.into(), lost: true });
-    }
-
-    pub(crate) fn push_warning(&mut self, warning: Warning) {
-        if self.warnings.len() < MAX_WARNINGS {
-            self.warnings.push(warning);
-        } else {
-            self.dropped += 1;
-            self.dropped_lost |= warning.lost;
-        }
-    }
-
-    /// All warnings so far.
-    pub(crate) fn take_warnings(&mut self) -> Vec<Warning> {
-        let mut warnings = std::mem::take(&mut self.warnings);
-        if self.dropped > 0 {
-            let message = format!("{} further warnings are not listed", self.dropped);
-            warnings.push(Warning { source: Source::default(), message, lost: self.dropped_lost });
-        }
-        warnings
     }
 }

@@ -20,7 +20,9 @@ pub(crate) fn expand(graph: &mut Graph) {
         let body = graph.prototypes.get(&kind).filter(|p| !p.external).map(|p| p.body.clone());
         if let Some(body) = body {
             if body.iter().any(|&b| graph.node(b).kind == "Script") {
-                graph.warn(source, format!("{kind} is a prototype with a Script, which is not run here"));
+                graph
+                    .notes
+                    .warn(source, format!("{kind} is a prototype with a Script, which is not run here"));
             }
             let copied = body.first().and_then(|&first| {
                 let mut copy = Copy { graph, known: FxHashMap::default(), instance: ix as NodeIx, budget };
@@ -36,14 +38,14 @@ pub(crate) fn expand(graph: &mut Graph) {
                         (copied.kind, copied.fields, copied.children);
                     if target.kind == kind {
                         target.kind.clear();
-                        graph.lose(source, format!("prototype {kind} consists of itself; left out"));
+                        graph.notes.lose(source, format!("prototype {kind} consists of itself; left out"));
                     } else if graph.prototypes.contains_key(&graph.nodes[ix].kind) {
                         continue;
                     }
                 }
-                None => {
-                    graph.lose(source, format!("prototype {kind} has no body that could be used; left out"))
-                }
+                None => graph
+                    .notes
+                    .lose(source, format!("prototype {kind} has no body that could be used; left out")),
             }
         }
         ix += 1;

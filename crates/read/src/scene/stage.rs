@@ -3,10 +3,11 @@
 
 use super::graph::{Graph, NodeIx};
 use crate::ReadError;
+use crate::assemble::Notes;
 use crate::trimmed::{self, Look, TrimLoop};
 use chordal_brep::{
-    BodyKind, Color, FaceGeometry, LooseItem, LooseKind, Model, Node, NodeId, Part, PartId, Source,
-    TessellatedItem, Warning,
+    BodyKind, Color, FaceGeometry, LooseItem, LooseKind, Model, Node, NodeId, Part, PartId, ReadIssue,
+    Source, TessellatedItem,
 };
 use chordal_nurbs::{DAffine3, DVec3, NurbsSurface, Surface};
 use std::sync::Arc;
@@ -37,7 +38,7 @@ pub(crate) struct Stage {
     /// What may still be visited and copied: it bounds the work on files whose uses of uses fan out for ever.
     budget: u64,
     exhausted: bool,
-    pub warnings: Vec<Warning>,
+    pub notes: Notes,
 }
 
 /// Work that any file may cause, and work for each byte of it.
@@ -54,7 +55,7 @@ impl Stage {
             frames: vec![Frame::default()],
             budget: BUDGET + BUDGET_PER_BYTE * bytes as u64,
             exhausted: false,
-            warnings: Vec::new(),
+            notes: Notes::default(),
         }
     }
 
@@ -73,7 +74,7 @@ impl Stage {
             if !self.exhausted {
                 let message =
                     "nodes are used within nodes that are used too often; what comes after is left out";
-                self.lose(source, message);
+                self.notes.lose(source, message);
             }
             self.exhausted = true;
             self.budget = 0;
@@ -81,14 +82,6 @@ impl Stage {
         }
         self.budget -= cost;
         true
-    }
-
-    pub(crate) fn warn(&mut self, source: Source, message: impl Into<String>) {
-        self.warnings.push(Warning { source, message: message.into(), lost: false });
-    }
-
-    pub(crate) fn lose(&mut self, source: Source, message: impl Into<String>) {
-        self.warnings.push(Warning { source, message: message.into(), lost: true });
     }
 
     /// Shapes that come now belong to a part of their own.
@@ -115,7 +108,7 @@ impl Stage {
     /// Places what a closed part consists of.
     pub(crate) fn place(&mut self, what: &[Placed], transform: &DAffine3, source: Source) {
         if !transform.is_finite() {
-            self.lose(source, "the place of a shape is not finite; left out");
+            self.notes.lose(source, "the place of a shape is not finite; left out");
         } else if self.afford(PLACEMENT * what.len(), source) {
             let moved = |p: &Placed| Placed { transform: *transform * p.transform, ..p.clone() };
             self.frame().placed.extend(what.iter().map(moved));
@@ -132,17 +125,17 @@ impl Stage {
     ) {
         let moved = nurbs.transformed(world);
         if !moved.points().iter().all(|p| p.is_finite()) {
-            return self.failed(format!("{}: its place is not finite", look.source), look);
+            return self.failed("its place is not finite".into(), look);
         }
         let surface = Arc::new(Surface::Nurbs(moved));
         let look = Look { flipped: look.flipped ^ mirrors(world), ..look.clone() };
         let frame = self.frames.last_mut().expect("the common part is never taken");
-        let faces = trimmed::add_faces(&mut frame.part, &surface, trims, &look, &mut self.warnings);
+        let faces = trimmed::add_faces(&mut frame.part, &surface, trims, &look, &self.notes);
         trimmed::add_body(&mut frame.part, faces, BodyKind::FaceSet, &look);
     }
 
     /// Adds a shape that could not be understood as a failed face.
-    pub(crate) fn failed(&mut self, reason: String, look: &Look) {
+    pub(crate) fn failed(&mut self, reason: ReadIssue, look: &Look) {
         let part = self.part();
         let face = trimmed::add_failed(part, reason, look);
         trimmed::add_body(part, vec![face], BodyKind::FaceSet, look);
@@ -171,7 +164,7 @@ impl Stage {
         if item.points.iter().all(|p| p.is_finite()) {
             self.part().tessellated.push(item);
         } else {
-            self.lose(look.source, "polygons with corners that are not finite; left out");
+            self.notes.lose(look.source, "polygons with corners that are not finite; left out");
         }
     }
 
@@ -200,14 +193,15 @@ impl Stage {
         unit: &str,
         millimetres: f64,
     ) -> Result<Model, ReadError> {
-        let mut warnings = graph.take_warnings();
-        warnings.append(&mut self.warnings);
+        let mut issues = graph.notes.take();
+        issues.append(&mut self.notes.take());
         let Frame { part: mut common, mut placed } = self.frames.swap_remove(0);
         let has_common = !is_empty(&common);
         let all = || std::iter::once(&common).chain(&self.parts);
         let nothing = !all().any(has_shape);
         if nothing {
-            let worst = warnings.iter().find(|w| w.lost).or(warnings.first()).map(ToString::to_string);
+            let worst =
+                issues.iter().find(|issue| issue.is_error()).or(issues.first()).map(ToString::to_string);
             let problem = all().find_map(first_failure).or(worst).unwrap_or("no node is a shape".to_owned());
             return Err(ReadError::NothingInIt {
                 name: name.to_owned(),
@@ -243,7 +237,7 @@ impl Stage {
             parts: self.parts,
             nodes,
             roots: vec![NodeId(0)],
-            warnings,
+            issues,
         })
     }
 }
@@ -271,7 +265,7 @@ fn has_shape(part: &Part) -> bool {
 
 fn first_failure(part: &Part) -> Option<String> {
     part.faces.iter().find_map(|face| match &face.geometry {
-        FaceGeometry::Failed(reason) => Some(reason.clone()),
+        FaceGeometry::Failed(issue) => Some(issue.to_string()),
         FaceGeometry::Surface(_) => None,
     })
 }

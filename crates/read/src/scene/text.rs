@@ -45,7 +45,9 @@ impl Parser<'_> {
             Token::Word(word) => found.extend(self.node(word)),
             Token::Sign(b'{') => {
                 let source = self.here();
-                self.graph.warn(source, "a brace that belongs to no node; what it encloses is read as nodes");
+                self.graph
+                    .notes
+                    .warn(source, "a brace that belongs to no node; what it encloses is read as nodes");
             }
             _ => {}
         }
@@ -78,6 +80,7 @@ impl Parser<'_> {
                 if known.is_none() {
                     let source = Source { entity: 0, line };
                     self.graph
+                        .notes
                         .lose(source, format!("USE {name}: no node of this name comes before; left out"));
                 }
                 known
@@ -105,11 +108,13 @@ impl Parser<'_> {
     fn body(&mut self, kind: &str, name: String, line: u32) -> Option<NodeIx> {
         let source = Source { entity: 0, line };
         if !self.lexer.take(b'{') {
-            self.graph.warn(source, format!("{kind} is no node and no statement that is known; skipped"));
+            self.graph
+                .notes
+                .warn(source, format!("{kind} is no node and no statement that is known; skipped"));
             return None;
         }
         if self.depth >= MAX_DEPTH {
-            self.graph.lose(source, format!("{kind} lies deeper than {MAX_DEPTH} nodes; left out"));
+            self.graph.notes.lose(source, format!("{kind} lies deeper than {MAX_DEPTH} nodes; left out"));
             self.skip_braces();
             return None;
         }
@@ -123,7 +128,7 @@ impl Parser<'_> {
             match self.lexer.next() {
                 Token::Sign(b'}') => break,
                 Token::End => {
-                    self.graph.lose(source, format!("the file ends within this {kind}"));
+                    self.graph.notes.lose(source, format!("the file ends within this {kind}"));
                     break;
                 }
                 Token::Word(word) => self.member(word, &mut node),

@@ -5,6 +5,7 @@ use super::keyword::Kw;
 use super::number;
 use super::scan::string_end;
 use super::text;
+use chordal_brep::{ReadIssue, Real};
 use memchr::memmem;
 
 /// What the next attribute is, by its first byte.
@@ -52,20 +53,21 @@ impl<'d> Args<'d> {
         leaves
     }
 
-    fn bad(&self, expected: &str) -> Bad {
+    fn bad(&self, expected: &'static str) -> Bad {
+        let keyword = self.doc.kw(self.ix).name().into();
         let found: String = self.bytes[self.at..].iter().take(24).map(|&b| char::from(b)).collect();
         let found = found.split([',', '\n', '\r']).next().unwrap_or_default().trim_end();
         if found.is_empty() || found.starts_with(')') {
-            return self
-                .doc
-                .bad(self.ix, format!("attribute {} is missing: it should be {expected}", self.taken));
+            let missing = ReadIssue::MissingAttribute { keyword, number: self.taken, expected };
+            return self.doc.bad(self.ix, missing);
         }
-        self.doc.bad(self.ix, format!("attribute {} is not {expected} but {found:?}", self.taken))
+        let found = found.to_owned();
+        self.doc.bad(self.ix, ReadIssue::WrongAttribute { keyword, number: self.taken, expected, found })
     }
 
     /// An error about the attribute taken last.
-    pub(crate) fn wrong(&self, message: impl std::fmt::Display) -> Bad {
-        self.doc.bad(self.ix, message)
+    pub(crate) fn wrong(&self, issue: impl Into<ReadIssue>) -> Bad {
+        self.doc.bad(self.ix, issue)
     }
 
     fn byte(&self) -> Option<u8> {
@@ -245,7 +247,7 @@ impl<'d> Args<'d> {
     pub(crate) fn integer(&mut self) -> Res<i64> {
         let value = self.real()?;
         if value.abs() > 9e15 {
-            return Err(self.wrong(format!("attribute {} is too large ({value})", self.taken)));
+            return Err(self.wrong(ReadIssue::BadValue { what: "number", value: Real(value) }));
         }
         Ok(value.round() as i64)
     }
@@ -303,7 +305,7 @@ impl<'d> Args<'d> {
         let found = id.and_then(|id| self.doc.find_from(id, self.ix));
         found.ok_or_else(|| {
             let name = String::from_utf8_lossy(&self.bytes[start..at]);
-            self.wrong(format!("refers to #{name}, which the file does not hold"))
+            self.wrong(ReadIssue::NameNotFound { what: "entity", name: format!("#{name}") })
         })
     }
 

@@ -4,7 +4,7 @@ use super::builder::Builder;
 use super::document::{Ix, Res};
 use super::faces::FaceUse;
 use super::keyword::Kw;
-use chordal_brep::{Body, BodyKind, FaceId, LooseItem, LooseKind, Shell, ShellId};
+use chordal_brep::{Body, BodyKind, FaceId, LooseItem, LooseKind, ReadIssue, Shell, ShellId};
 
 /// Items within items deeper than this refer in a circle.
 const MAX_DEPTH: u32 = 8;
@@ -72,9 +72,7 @@ impl Builder<'_> {
             kw if is_silent(kw) => {}
             Kw::Unknown => self.unknown_item(ix),
             kw => {
-                return Err(self
-                    .doc
-                    .bad(ix, format!("{} as an item of a shape is not understood; left out", kw.name())));
+                return Err(self.doc.bad(ix, ReadIssue::Unsupported { what: kw.name().into() }));
             }
         }
         Ok(())
@@ -83,7 +81,7 @@ impl Builder<'_> {
     fn unknown_item(&mut self, ix: Ix) {
         let name = self.doc.written_name(ix);
         if !is_text_or_view(&name) {
-            self.doc.lose(ix, format!("{name} is not understood; left out"));
+            self.doc.lose(ix, ReadIssue::Unsupported { what: name.into() });
         }
     }
 
@@ -112,7 +110,7 @@ impl Builder<'_> {
         } else if kinds.iter().any(|&kw| is_curve(kw)) {
             self.loose(ix, LooseKind::Wire);
         } else if !kinds.iter().any(|&kw| is_silent(kw)) {
-            return Err(self.doc.bad(ix, "is not an item that this reader knows; left out"));
+            return Err(self.doc.unknown(ix, "an item of a shape"));
         }
         Ok(())
     }
@@ -125,7 +123,7 @@ impl Builder<'_> {
         // The set's own colour and layer belong to what it holds.
         let (color, layer) = (self.color(ix), self.layer(ix));
         if color.is_some() || layer.is_some() {
-            for body in self.part.bodies.iter_mut().filter(|body| body.kind == BodyKind::FaceSet) {
+            for body in self.build.part.bodies.iter_mut().filter(|body| body.kind == BodyKind::FaceSet) {
                 body.color = body.color.or(color);
                 body.layer = body.layer.take().or_else(|| layer.clone());
             }
@@ -151,7 +149,7 @@ impl Builder<'_> {
             return;
         }
         let (color, layer, source) = (self.color(ix), self.layer(ix), self.doc.source(ix));
-        self.part.bodies.push(Body { kind, shells: ids, name, color, layer, source });
+        self.build.part.bodies.push(Body { kind, shells: ids, name, color, layer, source });
     }
 
     /// A shell with all its faces; oriented shells hand their orientation down.
@@ -177,10 +175,10 @@ impl Builder<'_> {
                 Kw::AdvancedFace | Kw::FaceSurface => {
                     return Ok(self.push_shell(ix, at, &[at], flipped, false));
                 }
-                _ => return Err(self.doc.bad(at, "is not a shell")),
+                _ => return Err(self.doc.unknown(at, "a shell")),
             }
         }
-        Err(self.doc.bad(ix, "is defined by itself"))
+        Err(self.doc.recursive(ix, MAX_DEPTH))
     }
 
     fn shell_faces(&self, ix: Ix) -> Res<Vec<Ix>> {
@@ -203,17 +201,17 @@ impl Builder<'_> {
             how.layer = self.layer(ix).or(how.layer);
         }
         let faces = faces.iter().map(|&face| self.face(face, &how)).collect();
-        let id = ShellId::from(self.part.shells.len());
-        self.part.shells.push(Shell { faces, closed, source: self.doc.source(ix) });
+        let id = ShellId::from(self.build.part.shells.len());
+        self.build.part.shells.push(Shell { faces, closed, source: self.doc.source(ix) });
         id
     }
 
     fn face_set(&mut self, ix: Ix, name: String, faces: Vec<FaceId>) {
         let source = self.doc.source(ix);
-        let shell = ShellId::from(self.part.shells.len());
-        self.part.shells.push(Shell { faces, closed: false, source });
+        let shell = ShellId::from(self.build.part.shells.len());
+        self.build.part.shells.push(Shell { faces, closed: false, source });
         let (color, layer) = (self.color(ix), self.layer(ix));
-        self.part.bodies.push(Body {
+        self.build.part.bodies.push(Body {
             kind: BodyKind::FaceSet,
             shells: vec![shell],
             name,
@@ -226,8 +224,8 @@ impl Builder<'_> {
     /// A surface that is no face's: a face of its own where it has bounds.
     fn loose_surface(&mut self, ix: Ix) {
         match self.trimmed_surface(ix) {
-            Err(bad) if bad.message().ends_with("has no bounds") => {
-                self.doc.warn(ix, "a surface without bounds belongs to no face; left out");
+            Err(bad) if matches!(bad.issue(), ReadIssue::SurfaceUnbounded) => {
+                self.doc.warn(ix, ReadIssue::SurfaceIgnored);
             }
             built => {
                 let mut args = self.doc.open(ix).ok();
@@ -246,7 +244,7 @@ impl Builder<'_> {
             Kw::Complex => String::new(),
             _ => self.doc.open(ix).map(|mut args| args.string()).unwrap_or_default(),
         };
-        self.part.loose.push(LooseItem { kind, name, source: self.doc.source(ix) });
+        self.build.part.loose.push(LooseItem { kind, name, source: self.doc.source(ix) });
     }
 }
 

@@ -5,7 +5,7 @@ use super::curves_2d::angular;
 use super::document::{Ix, Res};
 use super::faces::Trimmed;
 use super::keyword::Kw;
-use chordal_brep::{Coedge, Edge, EdgeId, Loop, Pcurve, Source, VertexId};
+use chordal_brep::{Coedge, Edge, EdgeId, Loop, Pcurve, ReadIssue, Source, VertexId};
 use chordal_nurbs::{CompositeSegment, Curve, Curve2, DVec2, DVec3, Range, Surface, UvBox};
 use std::sync::Arc;
 
@@ -43,7 +43,7 @@ impl Builder<'_> {
     fn natural(&mut self, ix: Ix) -> Res<Trimmed> {
         let surface = self.geometry.surface(ix)?;
         if !surface.domain().is_finite() {
-            return Err(self.doc.bad(ix, "has no bounds"));
+            return Err(self.doc.bad(ix, ReadIssue::SurfaceUnbounded));
         }
         Ok(Trimmed { surface, same_sense: true, loops: Vec::new() })
     }
@@ -60,9 +60,9 @@ impl Builder<'_> {
         let (along_u, along_v) = (args.logical(true), args.logical(true));
         let [period_u, period_v] = surface.periods();
         let u = ordered(u1, u2, along_u, period_u)
-            .ok_or_else(|| self.doc.bad(ix, "is trimmed to nothing along u"))?;
+            .ok_or_else(|| self.doc.bad(ix, ReadIssue::TrimmedToNothing))?;
         let v = ordered(v1, v2, along_v, period_v)
-            .ok_or_else(|| self.doc.bad(ix, "is trimmed to nothing along v"))?;
+            .ok_or_else(|| self.doc.bad(ix, ReadIssue::TrimmedToNothing))?;
         let same_sense = along_u == along_v;
         let loops = self.rectangle_loop(self.doc.source(ix), &surface, UvBox::from_ranges(u, v), same_sense);
         Ok(Trimmed { surface, same_sense, loops })
@@ -100,7 +100,7 @@ impl Builder<'_> {
         let mut vertex: [Option<VertexId>; 4] = [None; 4];
         for i in 0..4 {
             let known = (0..i).find(|&j| meets(i, j)).and_then(|j| vertex[j]);
-            vertex[i] = Some(known.unwrap_or_else(|| self.new_vertex(points[i], source)));
+            vertex[i] = Some(known.unwrap_or_else(|| self.build.new_vertex(points[i], source)));
         }
         let vertex = vertex.map(|v| v.expect("every corner got a vertex"));
         let side =
@@ -110,14 +110,10 @@ impl Builder<'_> {
         let right = if seam_u { None } else { Some(edge(1, 2, pole(1, 2))) };
         let top = if seam_v { None } else { Some(edge(3, 2, pole(3, 2))) };
         let left = edge(0, 3, pole(0, 3));
-        let right_side = coedge(right.as_ref().map_or(left.0, |e| e.0), true, &side(1, 2));
-        let top_side = coedge(top.as_ref().map_or(bottom.0, |e| e.0), false, &side(3, 2));
-        let mut coedges = vec![
-            coedge(bottom.0, true, &side(0, 1)),
-            right_side,
-            top_side,
-            coedge(left.0, false, &side(0, 3)),
-        ];
+        let right_side = coedge(right.unwrap_or(left), true, &side(1, 2));
+        let top_side = coedge(top.unwrap_or(bottom), false, &side(3, 2));
+        let mut coedges =
+            vec![coedge(bottom, true, &side(0, 1)), right_side, top_side, coedge(left, false, &side(0, 3))];
         if !same_sense {
             coedges.reverse();
             coedges.iter_mut().for_each(|c| c.forward = !c.forward);
@@ -125,20 +121,13 @@ impl Builder<'_> {
         vec![Loop::Edges { coedges, outer: true }]
     }
 
-    fn side_edge(&mut self, source: Source, surface: &Arc<Surface>, side: &Side, pole: bool) -> (EdgeId,) {
+    fn side_edge(&mut self, source: Source, surface: &Arc<Surface>, side: &Side, pole: bool) -> EdgeId {
         let curve = (!pole).then(|| {
             let curve = Box::new(Curve2::Line { origin: side.from, direction: side.to - side.from });
             Arc::new(Curve::OnSurface { surface: surface.clone(), curve })
         });
-        let id = EdgeId::from(self.part.edges.len());
-        self.part.edges.push(Edge {
-            curve,
-            range: Range::new(0.0, 1.0),
-            start: side.start,
-            end: side.end,
-            source,
-        });
-        (id,)
+        let range = Range::new(0.0, 1.0);
+        self.build.push_edge(Edge { curve, range, start: side.start, end: side.end, source })
     }
 
     /// CURVE_BOUNDED_SURFACE(name, basis, boundaries, implicit_outer).
@@ -152,7 +141,7 @@ impl Builder<'_> {
         if natural_outer {
             let domain = surface.domain();
             if !domain.is_finite() {
-                return Err(self.doc.bad(ix, "its outer boundary is that of an unbounded surface"));
+                return Err(self.doc.bad(ix, ReadIssue::SurfaceUnbounded));
             }
             loops = self.rectangle_loop(self.doc.source(ix), &surface, domain, true);
         }
@@ -173,12 +162,12 @@ impl Builder<'_> {
             !finite || !s.curve.point(s.start).is_finite() || !s.curve.point(s.end).is_finite()
         };
         if segments.iter().any(endless) {
-            return Err(self.doc.bad(ix, "a piece of it has no ends"));
+            return Err(self.doc.bad(ix, ReadIssue::CurveUnbounded));
         }
         // Vertex i is where piece i ends and piece i + 1 starts; a piece that is a single point, at a pole, starts where it ends.
         let points = single_points(&segments);
         let mut joints: Vec<VertexId> =
-            segments.iter().map(|s| self.new_vertex(s.curve.point(s.end), source)).collect();
+            segments.iter().map(|s| self.build.new_vertex(s.curve.point(s.end), source)).collect();
         for i in (0..joints.len()).filter(|&i| points[i]) {
             joints[i] = joints[(i + joints.len() - 1) % joints.len()];
         }
@@ -195,10 +184,9 @@ impl Builder<'_> {
                 Curve::OnSurface { curve, .. } => vec![Pcurve { curve: Arc::new((**curve).clone()), range }],
                 _ => Vec::new(),
             };
-            let id = EdgeId::from(self.part.edges.len());
             let curve = (!points[i]).then(|| Arc::new(segment.curve));
-            self.part.edges.push(Edge { curve, range, start, end, source });
-            coedges.push(Coedge { edge: id, forward, pcurves });
+            let edge = self.build.push_edge(Edge { curve, range, start, end, source });
+            coedges.push(Coedge { edge, forward, pcurves });
         }
         Ok(coedges)
     }

@@ -4,8 +4,8 @@ use super::document::{Bad, Doc, Ix, Res};
 use super::geometry::Geometry;
 use super::styles::Styles;
 use super::units::Units;
-use crate::build::merge_vertices;
-use chordal_brep::{Color, EdgeId, Part, Source, Vertex, VertexId};
+use crate::assemble::PartBuilder;
+use chordal_brep::{Color, EdgeId, Part, Source, VertexId};
 use chordal_nurbs::{Curve2, DVec3, Range};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
@@ -33,15 +33,11 @@ pub(crate) struct Builder<'d> {
     pub doc: &'d Doc<'d>,
     pub geometry: Geometry<'d>,
     pub styles: &'d Styles,
-    pub part: Part,
+    pub build: PartBuilder,
     pub vertices: FxHashMap<Ix, VertexId>,
     pub edges: FxHashMap<Ix, Res<KnownEdge>>,
     /// Corners of polygons by the bits of their coordinates: files repeat the points of one corner.
     corners: FxHashMap<[u64; 3], VertexId>,
-    /// Vertices found to be one: the second is replaced by the first when the part is finished.
-    same: Vec<(VertexId, VertexId)>,
-    /// Straight edges put into gaps of loops, by their vertices.
-    pub joints: FxHashMap<(VertexId, VertexId), EdgeId>,
     /// By edge: true where a loop uses it already.
     pub settled: Vec<bool>,
     /// Items taken already; one entity makes one body however often it is listed.
@@ -61,31 +57,18 @@ impl<'d> Builder<'d> {
             doc,
             geometry: Geometry::new(doc, units),
             styles,
-            part,
+            build: PartBuilder::new(part),
             vertices: FxHashMap::default(),
             edges: FxHashMap::default(),
             corners: FxHashMap::default(),
-            same: Vec::new(),
-            joints: FxHashMap::default(),
             settled: Vec::new(),
             taken: FxHashSet::default(),
         }
     }
 
     /// The finished part.
-    pub(crate) fn finish(mut self) -> Part {
-        merge_vertices(&mut self.part, &self.same);
-        self.part
-    }
-
-    pub(crate) fn new_vertex(&mut self, point: DVec3, source: Source) -> VertexId {
-        let id = VertexId::from(self.part.vertices.len());
-        self.part.vertices.push(Vertex { point, source });
-        id
-    }
-
-    pub(crate) fn point_of(&self, vertex: VertexId) -> DVec3 {
-        self.part.vertices[vertex.index()].point
+    pub(crate) fn finish(self) -> Part {
+        self.build.finish()
     }
 
     /// The vertex of a polygon's corner: one for all corners with the same coordinates.
@@ -95,16 +78,9 @@ impl<'d> Builder<'d> {
         if let Some(&known) = self.corners.get(&key) {
             return known;
         }
-        let id = self.new_vertex(point, source);
+        let id = self.build.new_vertex(point, source);
         self.corners.insert(key, id);
         id
-    }
-
-    /// Notes that two vertices are one.
-    pub(crate) fn merge(&mut self, a: VertexId, b: VertexId) {
-        if a != b {
-            self.same.push((a.min(b), a.max(b)));
-        }
     }
 
     /// Notes what is wrong with something that is left out.

@@ -5,7 +5,8 @@ use super::bspline::Knots;
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
-use crate::build::replace_zero_weights;
+use crate::assemble::replace_zero_weights;
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{CompositeSegment, Curve, DVec3, NurbsCurve, NurbsCurve3, Range, Vector};
 use std::f64::consts::TAU;
 
@@ -103,7 +104,7 @@ impl Geometry<'_> {
                 let distance = args.real()?;
                 let reference = self.direction(args.reference()?)?;
                 let Some(reference) = reference.try_normalize() else {
-                    return Err(doc.bad(ix, "the reference direction is a zero vector"));
+                    return Err(doc.bad(ix, ReadIssue::ZeroVector { what: "reference direction" }));
                 };
                 Ok(Curve::Offset { basis, distance, reference })
             }
@@ -118,12 +119,12 @@ impl Geometry<'_> {
     }
 
     /// A radius or semi-axis: negative ones are taken positive, zero is refused.
-    pub(crate) fn size(&self, ix: Ix, what: &str, value: f64) -> Res<f64> {
+    pub(crate) fn size(&self, ix: Ix, what: &'static str, value: f64) -> Res<f64> {
         if value == 0.0 {
-            return Err(self.doc.bad(ix, format!("the {what} is zero")));
+            return Err(self.doc.bad(ix, ReadIssue::BadValue { what, value: Real(0.0) }));
         }
         if value < 0.0 {
-            self.doc.warn(ix, format!("the {what} is negative ({value}); taken positive"));
+            self.doc.warn(ix, ReadIssue::NegativeValue { what, value: Real(value) });
         }
         Ok(value.abs())
     }
@@ -140,7 +141,7 @@ impl Geometry<'_> {
 
     fn checked_polyline(&self, ix: Ix, points: Vec<DVec3>) -> Res<Curve> {
         if points.len() < 2 {
-            Err(self.doc.bad(ix, "has fewer than two points"))
+            Err(self.doc.bad(ix, ReadIssue::TooFew { what: "points", found: points.len(), least: 2 }))
         } else {
             Ok(Curve::Polyline(points))
         }
@@ -153,7 +154,7 @@ impl Geometry<'_> {
         if let Ok(mut segments) = args.list() {
             while let Some((kind, mut content)) = segments.typed() {
                 if kind.starts_with(b"ARC") {
-                    self.doc.warn(ix, "an arc of an indexed polyline is replaced by its chords");
+                    self.doc.warn(ix, ReadIssue::ArcAsChords);
                 }
                 let indices = content.integers()?;
                 let known = order.last().is_some_and(|&last| Some(&last) == indices.first());
@@ -167,7 +168,7 @@ impl Geometry<'_> {
             order.iter().map(|&i| usize::try_from(i - 1).ok().and_then(|i| points.get(i)).copied()).collect();
         match picked {
             Some(points) => self.checked_polyline(ix, points),
-            None => Err(self.doc.bad(ix, "an index lies outside the list of points")),
+            None => Err(self.doc.bad(ix, ReadIssue::Missing { what: "point for an index of the polyline" })),
         }
     }
 
@@ -179,13 +180,7 @@ impl Geometry<'_> {
             if let Ok((surface_ix, curve)) = self.pcurve(pcurve)
                 && let Ok(surface) = self.surface(surface_ix)
             {
-                self.doc.warn(
-                    ix,
-                    format!(
-                        "the curve in space is unusable ({}); its curve on the surface is used",
-                        bad.message()
-                    ),
-                );
+                self.doc.warn(ix, ReadIssue::CurveFromSurface { cause: bad.issue().clone().boxed() });
                 return Ok(Curve::OnSurface { surface, curve: Box::new(curve) });
             }
         }
@@ -213,7 +208,7 @@ impl Geometry<'_> {
                 }
                 kw => match SPLINES.iter().find(|(name, _)| *name == kw) {
                     Some((_, knots)) => knots(),
-                    None => return Err(doc.bad(ix, "is not a curve that this reader knows")),
+                    None => return Err(doc.unknown(ix, "a curve")),
                 },
             };
             return Ok(SplineCurve { degree, points, knots, weights: None });
@@ -221,7 +216,7 @@ impl Geometry<'_> {
         let leaves = args.leaves();
         let leaf = |kw| leaves.iter().find(|(name, _)| *name == kw).map(|(_, args)| args.clone());
         let Some(mut head) = leaf(Kw::BSplineCurve) else {
-            return Err(doc.bad(ix, "is not a curve that this reader knows"));
+            return Err(doc.unknown(ix, "a curve"));
         };
         let (degree, points) = spline_head(&mut head)?;
         let knots = match leaf(Kw::BSplineCurveWithKnots) {
@@ -244,21 +239,22 @@ impl Geometry<'_> {
         points: Vec<V>,
         weights: Option<Vec<f64>>,
     ) -> Res<NurbsCurve<V>> {
-        let bad = |message: String| self.doc.bad(ix, message);
+        let bad = |issue: ReadIssue| self.doc.bad(ix, issue);
         let vector = knots.vector(degree, points.len()).map_err(bad)?;
         if let Some(weights) = &weights
             && weights.len() != points.len()
         {
-            return Err(self
-                .doc
-                .bad(ix, format!("{} weights for {} control points", weights.len(), points.len())));
+            return Err(self.doc.bad(
+                ix,
+                ReadIssue::Count { what: "weights", found: weights.len(), expected: points.len() },
+            ));
         }
         if vector.repaired() {
-            self.doc.warn(ix, "an end knot's multiplicity is over the degree + 1; control points without effect are left out");
+            self.doc.warn(ix, ReadIssue::SurplusKnots);
         }
         let (points, mut weights) = (vector.trim(points), weights.map(|weights| vector.trim(weights)));
         if weights.as_deref_mut().is_some_and(replace_zero_weights) {
-            self.doc.warn(ix, "a weight is zero; replaced by one too small to matter");
+            self.doc.warn(ix, ReadIssue::ZeroWeight);
         }
         NurbsCurve::new(degree, vector.knots, points, weights).map_err(|error| self.doc.bad(ix, error))
     }
@@ -278,10 +274,10 @@ impl Geometry<'_> {
         let [from, to] = if sense { ends } else { [ends[1], ends[0]] };
         let range = between(&basis.curve, from, to);
         let Some((range, swapped)) = range else {
-            return Err(self.doc.bad(ix, "is trimmed to nothing"));
+            return Err(self.doc.bad(ix, ReadIssue::TrimmedToNothing));
         };
         if swapped {
-            self.doc.warn(ix, "the trims run against the sense of the curve; the sense is corrected");
+            self.doc.warn(ix, ReadIssue::TrimSense);
         }
         Ok(BoundedCurve { curve: basis.curve, range, forward: (sense != swapped) == basis.forward })
     }
@@ -294,7 +290,7 @@ impl Geometry<'_> {
         match trim.point.map(|point| self.point(point)) {
             Some(Ok(point)) => Ok(super::locate::parameter_of(curve, point)),
             Some(Err(bad)) => parameter.ok_or(bad),
-            None => Err(self.doc.bad(ix, "a trim is neither a point nor a parameter")),
+            None => Err(self.doc.bad(ix, ReadIssue::TrimUnknown)),
         }
     }
 
@@ -302,7 +298,7 @@ impl Geometry<'_> {
     pub(crate) fn bounded(&mut self, ix: Ix) -> Res<BoundedCurve> {
         let bounded = self.bounded_or_whole(ix)?;
         if !bounded.range.is_finite() {
-            return Err(self.doc.bad(ix, "is a curve without ends where a bounded one belongs"));
+            return Err(self.doc.bad(ix, ReadIssue::CurveUnbounded));
         }
         Ok(bounded)
     }
@@ -344,7 +340,11 @@ impl Geometry<'_> {
                 curve => segments.push(CompositeSegment { curve, start, end }),
             }
         }
-        if segments.is_empty() { Err(self.doc.bad(ix, "has no segments")) } else { Ok(segments) }
+        if segments.is_empty() {
+            Err(self.doc.bad(ix, ReadIssue::TooFew { what: "segments", found: 0, least: 1 }))
+        } else {
+            Ok(segments)
+        }
     }
 }
 
@@ -364,7 +364,7 @@ fn append_composite(segments: &mut Vec<CompositeSegment>, inner: Vec<CompositeSe
 fn spline_head(args: &mut Args<'_>) -> Res<(usize, Vec<Ix>)> {
     let degree = args.integer()?;
     let Ok(degree) = usize::try_from(degree) else {
-        return Err(args.wrong(format!("degree {degree} is negative")));
+        return Err(args.wrong(ReadIssue::BadValue { what: "degree", value: Real(degree as f64) }));
     };
     Ok((degree, args.references_strict()?))
 }

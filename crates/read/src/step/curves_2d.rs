@@ -4,6 +4,7 @@ use super::curves::{SplineCurve, Trim};
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve, Curve2, DVec2, Range, Surface};
 
 /// A curve with its own range where it is trimmed.
@@ -39,7 +40,9 @@ impl Geometry<'_> {
                 break;
             }
         }
-        let Some(curve) = found else { return Err(self.doc.bad(ix, "has no curve in its representation")) };
+        let Some(curve) = found else {
+            return Err(self.doc.bad(ix, ReadIssue::Missing { what: "curve in the representation" }));
+        };
         let (curve, range) = self.nested(ix, |geometry| geometry.curve2(curve))?;
         Ok((surface, self.in_radians(ix, surface, curve)?, range))
     }
@@ -55,7 +58,9 @@ impl Geometry<'_> {
         if by == [1.0, 1.0] {
             return Ok(curve);
         }
-        curve.scaled(DVec2::from(by)).ok_or_else(|| self.doc.bad(ix, "cannot be turned into radians"))
+        curve
+            .scaled(DVec2::from(by))
+            .ok_or_else(|| self.doc.bad(ix, ReadIssue::NotTransformable { what: "curve in parameter space" }))
     }
 
     fn points2(&mut self, list: Vec<Ix>) -> Res<Vec<DVec2>> {
@@ -92,7 +97,9 @@ impl Geometry<'_> {
                 let points = args.references_strict()?;
                 let points = self.points2(points)?;
                 if points.len() < 2 {
-                    return Err(self.doc.bad(ix, "has fewer than two points"));
+                    return Err(self
+                        .doc
+                        .bad(ix, ReadIssue::TooFew { what: "points", found: points.len(), least: 2 }));
                 }
                 Curve2::Polyline(points)
             }
@@ -125,14 +132,14 @@ impl Geometry<'_> {
             _ => 1.0,
         };
         let [Some(from), Some(to)] = trims.map(|trim| trim.parameter.map(|t| t * unit)) else {
-            return Err(self.doc.bad(ix, "is not trimmed by parameters"));
+            return Err(self.doc.bad(ix, ReadIssue::TrimUnknown));
         };
         let [from, mut to] = if sense { [from, to] } else { [to, from] };
         if let (Some(period), true) = (basis.period(), to <= from) {
             to += period;
         }
         if to <= from {
-            return Err(self.doc.bad(ix, "is trimmed to nothing"));
+            return Err(self.doc.bad(ix, ReadIssue::TrimmedToNothing));
         }
         if sense {
             return Ok((basis, Some(Range::new(from, to))));
@@ -152,7 +159,7 @@ impl Geometry<'_> {
             let (curve, range) = self.nested(segment, |geometry| geometry.curve2(parent))?;
             let range = range.unwrap_or_else(|| curve.domain());
             if !range.is_finite() {
-                return Err(self.doc.bad(segment, "is a curve without ends where a bounded one belongs"));
+                return Err(self.doc.bad(segment, ReadIssue::CurveUnbounded));
             }
             pieces.push(if same_sense {
                 (curve, range.start, range.end)
@@ -161,7 +168,7 @@ impl Geometry<'_> {
             });
         }
         if pieces.is_empty() {
-            Err(self.doc.bad(ix, "has no segments"))
+            Err(self.doc.bad(ix, ReadIssue::TooFew { what: "segments", found: 0, least: 1 }))
         } else {
             Ok(Curve2::Composite(pieces))
         }

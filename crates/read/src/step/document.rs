@@ -3,40 +3,14 @@
 use super::args::Args;
 use super::keyword::{Keywords, Kw};
 use super::scan::{Entry, Scan, scan};
-use chordal_brep::{Source, Warning};
+use crate::assemble::Notes;
+pub(crate) use crate::assemble::{Bad, Res};
+use chordal_brep::{ReadIssue, Source, Word};
 use rustc_hash::FxHashMap;
-use std::cell::{Cell, RefCell};
-
-/// More warnings than this are counted, not kept.
-pub(crate) const MAX_WARNINGS: usize = 10_000;
+use std::cell::Cell;
 
 /// The position of an entity in the table.
 pub(crate) type Ix = u32;
-
-/// Why an entity cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Bad(Box<(Source, String)>);
-
-impl Bad {
-    pub(crate) fn new(source: Source, message: impl Into<String>) -> Self {
-        Self(Box::new((source, message.into())))
-    }
-    pub(crate) fn source(&self) -> Source {
-        self.0.0
-    }
-    pub(crate) fn message(&self) -> &str {
-        &self.0.1
-    }
-}
-
-impl std::fmt::Display for Bad {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {}", self.0.0, self.0.1)
-    }
-}
-
-/// A result whose error names an entity and says what is wrong with it.
-pub(crate) type Res<T> = Result<T, Bad>;
 
 /// Entity numbers to positions: a plain table where numbers are dense, else a hash map.
 #[derive(Debug)]
@@ -56,9 +30,7 @@ pub(crate) struct Doc<'a> {
     keywords: Keywords,
     pub data: Option<usize>,
     pub lines: u32,
-    warnings: RefCell<Vec<Warning>>,
-    dropped_warnings: Cell<usize>,
-    dropped_lost: Cell<bool>,
+    pub notes: Notes,
     /// Entities that may still be opened. It bounds the work on files whose references fan out for ever; an honest
     /// file needs about one opening per reference, and a reference takes at least three bytes.
     budget: Cell<u64>,
@@ -68,24 +40,11 @@ impl<'a> Doc<'a> {
     /// Indexes a file.
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         let keywords = Keywords::new();
-        let Scan { mut entries, mut warnings, data, lines } = scan(bytes, &keywords);
+        let Scan { mut entries, notes, data, lines } = scan(bytes, &keywords);
         entries.shrink_to_fit();
-        let (ids, repeated) = index(&entries, &mut warnings);
+        let (ids, repeated) = index(&entries, &notes);
         let budget = Cell::new(bytes.len() as u64 + 200_000);
-        let warnings = RefCell::new(warnings);
-        Self {
-            bytes,
-            entries,
-            ids,
-            repeated,
-            keywords,
-            data,
-            lines,
-            warnings,
-            dropped_warnings: Cell::new(0),
-            dropped_lost: Cell::new(false),
-            budget,
-        }
+        Self { bytes, entries, ids, repeated, keywords, data, lines, notes, budget }
     }
 
     /// The entity that a reference in `from` means: of several with one number the nearest before it, else the first
@@ -133,62 +92,52 @@ impl<'a> Doc<'a> {
     }
 
     /// Notes a warning about an entity.
-    pub(crate) fn warn(&self, ix: Ix, message: impl Into<String>) {
-        self.warn_at(self.source(ix), message);
+    pub(crate) fn warn(&self, ix: Ix, issue: impl Into<ReadIssue>) {
+        self.notes.warn(self.source(ix), issue);
     }
 
-    pub(crate) fn warn_at(&self, source: Source, message: impl Into<String>) {
-        self.push_warning(Warning { source, message: message.into(), lost: false });
-    }
-
-    /// Notes a warning about an entity whose shape, or some of it, will be missing from the model.
-    pub(crate) fn lose(&self, ix: Ix, message: impl Into<String>) {
-        self.push_warning(Warning { source: self.source(ix), message: message.into(), lost: true });
+    /// Notes an entity whose shape, or some of it, will be missing from the model.
+    pub(crate) fn lose(&self, ix: Ix, issue: impl Into<ReadIssue>) {
+        self.notes.lose(self.source(ix), issue);
     }
 
     /// Notes what is wrong with an entity whose shape will be missing from the model.
     pub(crate) fn lose_bad(&self, bad: &Bad) {
-        self.push_warning(Warning { source: bad.source(), message: bad.message().into(), lost: true });
+        self.notes.push(bad.clone().into_error());
     }
 
-    fn push_warning(&self, warning: Warning) {
-        let mut warnings = self.warnings.borrow_mut();
-        if warnings.len() < MAX_WARNINGS {
-            warnings.push(warning);
-        } else {
-            self.dropped_warnings.set(self.dropped_warnings.get() + 1);
-            self.dropped_lost.set(self.dropped_lost.get() || warning.lost);
-        }
-    }
-
-    /// Notes what is wrong with an entity that is left out.
+    /// Notes what is wrong with an entity that is not used.
     pub(crate) fn warn_bad(&self, bad: &Bad) {
-        self.warn_at(bad.source(), bad.message());
+        self.notes.warn(bad.source(), bad.issue().clone());
     }
 
-    /// All warnings so far.
-    pub(crate) fn take_warnings(&self) -> Vec<Warning> {
-        let mut warnings = self.warnings.take();
-        if self.dropped_warnings.get() > 0 {
-            let message = format!("{} further warnings are not listed", self.dropped_warnings.get());
-            warnings.push(Warning { source: Source::default(), message, lost: self.dropped_lost.get() });
+    pub(crate) fn bad(&self, ix: Ix, issue: impl Into<ReadIssue>) -> Bad {
+        Bad::new(self.source(ix), issue)
+    }
+
+    /// An entity is of another kind than `expected`, which carries its article.
+    pub(crate) fn unknown(&self, ix: Ix, expected: &'static str) -> Bad {
+        self.bad(ix, ReadIssue::UnknownKind { found: self.word(ix), expected })
+    }
+
+    /// An entity is defined by itself or by more than `levels` entities one within the other.
+    pub(crate) fn recursive(&self, ix: Ix, levels: u32) -> Bad {
+        self.bad(ix, ReadIssue::Recursive { keyword: self.word(ix), levels })
+    }
+
+    /// The keyword for messages, as the file spells it where this program does not know it.
+    pub(crate) fn word(&self, ix: Ix) -> Word {
+        match self.kw(ix) {
+            Kw::Unknown => self.written_name(ix).into(),
+            kw => kw.name().into(),
         }
-        warnings
-    }
-
-    pub(crate) fn first_warning(&self) -> Option<Warning> {
-        self.warnings.borrow().first().cloned()
-    }
-
-    pub(crate) fn bad(&self, ix: Ix, message: impl std::fmt::Display) -> Bad {
-        Bad::new(self.source(ix), format!("{}: {message}", self.kw(ix).name()))
     }
 
     /// The attributes of a simple entity, or the leaves of a complex one.
     pub(crate) fn open(&self, ix: Ix) -> Res<Args<'_>> {
         let left = self.budget.get();
         if left == 0 {
-            return Err(self.bad(ix, "too many references lead here; the file refers in circles"));
+            return Err(self.bad(ix, ReadIssue::TooManyReferences));
         }
         self.budget.set(left - 1);
         let entry = self.entry(ix);
@@ -200,7 +149,7 @@ impl<'a> Doc<'a> {
     pub(crate) fn leaf(&self, ix: Ix, kw: Kw) -> Res<Args<'_>> {
         match self.find_leaf(ix, kw)? {
             Some(args) => Ok(args),
-            None => Err(self.bad(ix, format!("is not a {}", kw.name()))),
+            None => Err(self.unknown(ix, kw.name())),
         }
     }
 
@@ -247,19 +196,14 @@ impl<'a> Doc<'a> {
 }
 
 /// The table of entity numbers, and the positions of those given more than once.
-fn index(entries: &[Entry], warnings: &mut Vec<Warning>) -> (Ids, FxHashMap<u64, Vec<Ix>>) {
+fn index(entries: &[Entry], notes: &Notes) -> (Ids, FxHashMap<u64, Vec<Ix>>) {
     let max = entries.iter().map(|entry| entry.id).max().unwrap_or(0);
     let mut repeated: FxHashMap<u64, Vec<Ix>> = FxHashMap::default();
     let mut repeat = |ix: Ix, entry: &Entry, first: Ix| {
         repeated.entry(entry.id).or_insert_with(|| vec![first]).push(ix);
-        if warnings.len() < MAX_WARNINGS {
-            let source = Source { entity: entry.id, line: entry.line };
-            let line = entries[first as usize].line;
-            let message = format!(
-                "the number was already given at line {line}; references mean the nearest before them"
-            );
-            warnings.push(Warning { source, message, lost: false });
-        }
+        let source = Source { entity: entry.id, line: entry.line };
+        let line = entries[first as usize].line;
+        notes.warn(source, ReadIssue::DuplicateNumber { line });
     };
     let ids = if max < entries.len() as u64 * 8 + 4096 {
         let mut table = vec![Ix::MAX; max as usize + 1];

@@ -4,12 +4,13 @@ use super::builder::{Builder, KnownEdge};
 use super::document::{Ix, Res};
 use super::keyword::Kw;
 use super::locate::{self, Located, locate};
-use chordal_brep::{Edge, EdgeId, VertexId};
+use chordal_brep::{Edge, Issue, ReadIssue, Source, VertexId};
 use chordal_nurbs::{Curve, Range};
 use std::sync::Arc;
 
-/// A gap between a vertex and its curve is spoken of where it exceeds this part of the edge's length.
-const GAP_WORTH_A_WORD: f64 = 0.1;
+/// A gap between a vertex and its curve is noted where it exceeds this part of the edge's length: gaps below it are
+/// the rule in files of loose accuracy, and the report lists the widest one anyway.
+const NOTED_GAP: f64 = 0.1;
 
 impl Builder<'_> {
     /// VERTEX_POINT.
@@ -27,7 +28,7 @@ impl Builder<'_> {
             args.reference()?
         };
         let point = self.geometry.point(point_ix)?;
-        let id = self.new_vertex(point, self.doc.source(ix));
+        let id = self.build.new_vertex(point, self.doc.source(ix));
         self.vertices.insert(ix, id);
         Ok(id)
     }
@@ -61,8 +62,7 @@ impl Builder<'_> {
         let own_parameters = located.is_some();
         let range = edge.range;
         let angle = edge.curve.as_ref().map_or(1.0, |curve| self.geometry.parameter_unit(curve));
-        let id = EdgeId::from(self.part.edges.len());
-        self.part.edges.push(edge);
+        let id = self.build.push_edge(edge);
         let file_range = own_parameters.then(|| Range::new(range.start / angle, range.end / angle));
         let pcurves = geometry.map_or_else(|_| Vec::new(), |geometry| self.pcurves(geometry, id, file_range));
         Ok(KnownEdge { id, swapped: located.is_some_and(|l| l.swapped), pcurves: pcurves.into() })
@@ -78,21 +78,21 @@ impl Builder<'_> {
         same_sense: bool,
     ) -> (Edge, Option<Located>) {
         let source = self.doc.source(ix);
-        let [p, q] = [start, end].map(|v| self.point_of(v));
+        let [p, q] = [start, end].map(|v| self.build.point_of(v));
         let found = match &curve {
             Ok(curve) => locate(curve, p, q, start == end, same_sense),
             Err(_) => None,
         };
         if let (Ok(curve), Some(located)) = (curve.as_ref(), found) {
             if located.contradicted {
-                self.doc.warn(ix, "the edge's sense contradicts its vertices; the vertices are believed");
+                self.doc.warn(ix, ReadIssue::EdgeSense);
             }
             let Range { start: t0, end: t1 } = located.range;
             let (first, last) = if located.swapped { (end, start) } else { (start, end) };
-            let gap = [(t0, first), (t1, last)].map(|(t, v)| curve.point(t).distance(self.point_of(v)));
+            let gap = [(t0, first), (t1, last)].map(|(t, v)| curve.point(t).distance(self.build.point_of(v)));
             let gap = gap[0].max(gap[1]);
             if gap.is_finite() {
-                self.speak_of_gap(ix, curve, located.range, gap);
+                self.note_gap(ix, curve, located.range, gap);
                 let curve = Some(Arc::new(curve.clone()));
                 return (
                     Edge { curve, range: located.range, start: first, end: last, source },
@@ -100,34 +100,32 @@ impl Builder<'_> {
                 );
             }
         }
-        let why = match curve {
-            Err(bad) => bad.to_string(),
-            Ok(_) => "its curve has no length between its vertices".to_owned(),
-        };
+        let cause = curve.err().map(|bad| bad.into_cause(source));
         if p == q {
-            if start != end || !why.starts_with("its curve") {
-                self.doc.warn(ix, format!("the edge is a single point: {why}"));
+            if start != end || cause.is_some() {
+                self.doc.warn(ix, ReadIssue::EdgeIsPoint { cause });
             }
-            self.merge(start, end);
+            self.build.merge(start, end);
             return (Edge { curve: None, range: Range::new(0.0, 1.0), start, end: start, source }, None);
         }
-        self.doc.warn(ix, format!("the edge is taken for a straight line: {why}"));
+        let cause =
+            cause.unwrap_or_else(|| Box::new(Issue::error(Source::default(), ReadIssue::NoCurveBetween)));
+        self.doc.warn(ix, ReadIssue::EdgeStraightened { cause });
         let line = Curve::Line { origin: p, direction: q - p };
         (Edge { curve: Some(Arc::new(line)), range: Range::new(0.0, 1.0), start, end, source }, None)
     }
 
-    fn speak_of_gap(&self, ix: Ix, curve: &Curve, range: Range, gap: f64) {
+    fn note_gap(&self, ix: Ix, curve: &Curve, range: Range, gap: f64) {
         // The chord bounds the length from below: most edges are done with it.
         let chord = curve.point(range.start).distance(curve.point(range.end));
-        if gap <= GAP_WORTH_A_WORD * chord {
+        if gap <= NOTED_GAP * chord {
             return;
         }
         let length = locate::length(curve, range);
-        if gap > GAP_WORTH_A_WORD * length {
-            self.doc.warn(
-                ix,
-                format!("a vertex lies {gap:.3e} off the edge's curve, whose length is {length:.3e}"),
-            );
+        if gap > NOTED_GAP * length {
+            let units = &self.geometry.units;
+            let (gap, length) = (units.millimetres(gap), units.millimetres(length));
+            self.doc.warn(ix, ReadIssue::VertexOffCurve { gap, length });
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::builder::{Builder, KnownEdge};
 use super::document::{Ix, Res};
 use super::keyword::Kw;
-use chordal_brep::{Coedge, Color, Face, FaceGeometry, FaceId, Loop, Pcurve, VertexId};
+use chordal_brep::{Coedge, Color, Face, FaceGeometry, FaceId, Loop, Pcurve, ReadIssue, VertexId};
 use chordal_nurbs::{DVec3, Frame, Surface};
 use std::sync::Arc;
 
@@ -71,11 +71,11 @@ impl Builder<'_> {
     ) -> FaceId {
         let (geometry, same_sense, loops) = match built {
             Ok(trimmed) => (FaceGeometry::Surface(trimmed.surface), trimmed.same_sense, trimmed.loops),
-            Err(bad) => (FaceGeometry::Failed(bad.to_string()), true, Vec::new()),
+            Err(bad) => (FaceGeometry::Failed(bad.into_error()), true, Vec::new()),
         };
-        let id = FaceId::from(self.part.faces.len());
+        let id = FaceId::from(self.build.part.faces.len());
         let source = self.doc.source(ix);
-        self.part.faces.push(Face { geometry, same_sense, flipped, loops, name, color, layer, source });
+        self.build.part.faces.push(Face { geometry, same_sense, flipped, loops, name, color, layer, source });
         id
     }
 
@@ -119,7 +119,7 @@ impl Builder<'_> {
                 _ => return Ok((at, sense)),
             }
         }
-        Err(self.doc.bad(ix, "is defined by itself"))
+        Err(self.doc.recursive(ix, MAX_FACE_DEPTH))
     }
 
     fn face_data(&self, ix: Ix, depth: u32) -> Res<FaceData> {
@@ -150,7 +150,7 @@ impl Builder<'_> {
                 let geometry = Some(surface.reference());
                 Ok(FaceData { name, bounds, geometry, same_sense: surface.logical(true) })
             }
-            _ => Err(doc.bad(ix, "is not a face that this reader knows")),
+            _ => Err(doc.unknown(ix, "a face")),
         }
     }
 
@@ -194,7 +194,9 @@ impl Builder<'_> {
             vertices.pop();
         }
         if vertices.len() < 3 {
-            Err(self.doc.bad(ix, "has fewer than three distinct points"))
+            Err(self
+                .doc
+                .bad(ix, ReadIssue::TooFew { what: "distinct points", found: vertices.len(), least: 3 }))
         } else {
             Ok(vertices)
         }
@@ -218,14 +220,15 @@ impl Builder<'_> {
             }
         }
         if coedges.is_empty() && lost.is_empty() {
-            return Err(self.doc.bad(ix, "has no edges"));
+            return Err(self.doc.bad(ix, ReadIssue::NoEdges));
         }
         // Where at least as many edges are left as are lost, straight ones take their places below.
         match lost.into_iter().next() {
             Some(bad) if coedges.len() < 2 || coedges.len() < edges - coedges.len() => return Err(bad),
-            Some(bad) => self
-                .doc
-                .lose(ix, format!("goes without {} of its {edges} edges: {bad}", edges - coedges.len())),
+            Some(bad) => {
+                let cause = bad.into_cause(self.doc.source(ix));
+                self.doc.lose(ix, ReadIssue::EdgesLost { lost: edges - coedges.len(), edges, cause });
+            }
             None => {}
         }
         self.mend_chain(ix, &mut coedges);
@@ -248,7 +251,7 @@ impl Builder<'_> {
             at = args.reference()?;
             along = along == args.logical(true);
         }
-        Err(self.doc.bad(ix, "is defined by itself"))
+        Err(self.doc.recursive(ix, MAX_FACE_DEPTH))
     }
 
     /// A FACE without a surface: the plane of its polygons.
@@ -257,9 +260,9 @@ impl Builder<'_> {
         let mut best: Option<(f64, Frame)> = None;
         for boundary in &loops {
             let Loop::Polygon { vertices, .. } = boundary else {
-                return Err(self.doc.bad(ix, "has no surface"));
+                return Err(self.doc.bad(ix, ReadIssue::NoSurface));
             };
-            let points: Vec<DVec3> = vertices.iter().map(|&v| self.point_of(v)).collect();
+            let points: Vec<DVec3> = vertices.iter().map(|&v| self.build.point_of(v)).collect();
             let area = newell(&points);
             if best.is_none_or(|(largest, _)| area.length() > largest) {
                 best = Some((area.length(), Frame::new(points[0], area, points[1] - points[0])));
@@ -269,7 +272,7 @@ impl Builder<'_> {
             Some((area, frame)) if area > 0.0 => {
                 Ok(Trimmed { surface: Arc::new(Surface::Plane { frame }), same_sense: true, loops })
             }
-            _ => Err(self.doc.bad(ix, "its polygons have no area")),
+            _ => Err(self.doc.bad(ix, ReadIssue::NoArea)),
         }
     }
 }

@@ -26,10 +26,7 @@ impl<'d> Geometry<'d> {
     /// Runs `read` one level deeper; fails where the definitions refer in a circle.
     pub(crate) fn nested<T>(&mut self, ix: Ix, read: impl FnOnce(&mut Self) -> Res<T>) -> Res<T> {
         if self.depth >= MAX_DEPTH {
-            return Err(self.doc.bad(
-                ix,
-                format!("is defined by more than {MAX_DEPTH} entities in each other, or by itself"),
-            ));
+            return Err(self.doc.recursive(ix, MAX_DEPTH));
         }
         self.depth += 1;
         let result = read(self);

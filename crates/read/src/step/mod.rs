@@ -66,7 +66,7 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     if tree.parts.is_empty() {
         let problem = tree
             .first_problem()
-            .map_or_else(|| "no representation lists one".to_owned(), |bad| bad.to_string());
+            .map_or_else(|| "no representation lists one".to_owned(), |issue| issue.to_string());
         return Err(ReadError::NothingInIt { name: name.to_owned(), entities: doc.entries.len(), problem });
     }
     let Tree { parts, nodes, roots, unit, .. } = tree;
@@ -77,6 +77,6 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
         parts,
         nodes,
         roots,
-        warnings: doc.take_warnings(),
+        issues: doc.notes.take(),
     })
 }

@@ -85,8 +85,8 @@ impl Builder<'_> {
     fn runs_backwards(&mut self, edge: EdgeId, surface: Ix, curve: &Curve2, range: Range) -> bool {
         let Ok(surface) = self.geometry.surface(surface) else { return false };
         let ends = [range.start, range.end].map(|t| surface.point(curve.point(t)));
-        let edge = &self.part.edges[edge.index()];
-        let vertices = [edge.start, edge.end].map(|v| self.part.vertices[v.index()].point);
+        let edge = &self.build.part.edges[edge.index()];
+        let vertices = [edge.start, edge.end].map(|v| self.build.part.vertices[v.index()].point);
         let forward = ends[0].distance(vertices[0]) + ends[1].distance(vertices[1]);
         let backward = ends[0].distance(vertices[1]) + ends[1].distance(vertices[0]);
         backward < forward

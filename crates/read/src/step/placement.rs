@@ -3,6 +3,7 @@
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{DVec2, DVec3, Frame, Frame2};
 
 impl Geometry<'_> {
@@ -33,7 +34,7 @@ impl Geometry<'_> {
         let curve = self.curve(curve_ix)?;
         let t = t * self.parameter_unit(&curve);
         let p = curve.point(t);
-        if p.is_finite() { Ok(p) } else { Err(self.doc.bad(ix, "lies at no finite place")) }
+        if p.is_finite() { Ok(p) } else { Err(self.doc.bad(ix, ReadIssue::NotFinite { what: "point" })) }
     }
 
     pub(crate) fn point2(&mut self, ix: Ix) -> Res<DVec2> {
@@ -48,7 +49,7 @@ impl Geometry<'_> {
     /// VECTOR: direction times magnitude. A magnitude of zero is taken for one.
     pub(crate) fn vector(&self, ix: Ix) -> Res<DVec3> {
         if self.doc.kw(ix) == Kw::Direction {
-            self.doc.warn(ix, "DIRECTION where a VECTOR belongs; its length is taken for 1");
+            self.doc.warn(ix, ReadIssue::DirectionForVector);
             return Ok(self.direction(ix)?.normalize_or_zero());
         }
         let mut args = self.doc.leaf(ix, Kw::Vector)?;
@@ -56,17 +57,17 @@ impl Geometry<'_> {
         let direction = self.direction(args.reference()?)?.normalize_or_zero();
         let magnitude = args.real()?;
         if direction == DVec3::ZERO {
-            return Err(self.doc.bad(ix, "has no direction"));
+            return Err(self.doc.bad(ix, ReadIssue::ZeroVector { what: "direction" }));
         }
         if magnitude == 0.0 {
-            self.doc.warn(ix, "VECTOR of length 0; taken for 1");
+            self.doc.warn(ix, ReadIssue::ZeroLengthVector);
             return Ok(direction);
         }
         Ok(direction * magnitude)
     }
 
     /// A direction attribute that may be omitted, broken or zero; the last two with a warning.
-    fn direction_or_none(&self, ix: Option<Ix>, owner: Ix, what: &str) -> Option<DVec3> {
+    fn direction_or_none(&self, ix: Option<Ix>, owner: Ix, what: &'static str) -> Option<DVec3> {
         let direction = match self.direction(ix?) {
             Ok(direction) => direction,
             Err(bad) => {
@@ -76,7 +77,7 @@ impl Geometry<'_> {
         };
         let unit = direction.try_normalize();
         if unit.is_none() {
-            self.doc.warn(owner, format!("the {what} is a zero vector; replaced by the default"));
+            self.doc.warn(owner, ReadIssue::ZeroVectorReplaced { what });
         }
         unit
     }
@@ -95,7 +96,7 @@ impl Geometry<'_> {
         let parallel = |x: DVec3| x.cross(z).length_squared() < 1e-20;
         let x = match x {
             Some(x) if parallel(x) => {
-                self.doc.warn(ix, "the reference direction is parallel to the axis; replaced by the default");
+                self.doc.warn(ix, ReadIssue::ParallelAxes);
                 None
             }
             x => x,

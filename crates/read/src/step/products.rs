@@ -3,6 +3,7 @@
 use super::args::Args;
 use super::document::{Doc, Ix};
 use super::keyword::Kw;
+use chordal_brep::ReadIssue;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// One use of a product in another.
@@ -117,7 +118,7 @@ impl Products {
         for ix in doc.all(|kw| kw == Kw::ContextDependentShapeRepresentation) {
             let Ok(mut args) = doc.open(ix) else { continue };
             let (Some(relation), Some(shape)) = (args.optional_reference(), args.optional_reference()) else {
-                doc.warn(ix, "places nothing: a reference is missing");
+                doc.warn(ix, ReadIssue::NothingPlaced);
                 continue;
             };
             placing.insert(relation);

@@ -3,7 +3,8 @@
 //! Tolerant: a missing `;` or quote costs at most one entity, a file that ends early keeps all that is complete.
 
 use super::keyword::{Keywords, Kw};
-use chordal_brep::{Source, Warning};
+use crate::assemble::Notes;
+use chordal_brep::{ReadIssue, Source};
 use memchr::{memchr, memchr_iter, memmem};
 
 /// An entity instance of the file.
@@ -20,7 +21,7 @@ pub(crate) struct Entry {
 #[derive(Debug, Default)]
 pub(crate) struct Scan {
     pub entries: Vec<Entry>,
-    pub warnings: Vec<Warning>,
+    pub notes: Notes,
     /// The position of the first DATA section's content; `None` where there is none.
     pub data: Option<usize>,
     /// Lines of the file, as far as it was read.
@@ -116,19 +117,13 @@ const CLASS: [u8; 256] = {
 };
 
 impl Scanner<'_> {
-    fn warn(&mut self, entity: u64, message: impl Into<String>) {
-        self.push_warning(entity, message.into(), false);
+    fn warn(&self, entity: u64, issue: impl Into<ReadIssue>) {
+        self.out.notes.warn(Source { entity, line: self.line }, issue);
     }
 
     /// Notes that part of the file is missing.
-    fn lose(&mut self, entity: u64, message: impl Into<String>) {
-        self.push_warning(entity, message.into(), true);
-    }
-
-    fn push_warning(&mut self, entity: u64, message: String, lost: bool) {
-        if self.out.warnings.len() < super::document::MAX_WARNINGS || lost {
-            self.out.warnings.push(Warning { source: Source { entity, line: self.line }, message, lost });
-        }
+    fn lose(&self, entity: u64, issue: impl Into<ReadIssue>) {
+        self.out.notes.lose(Source { entity, line: self.line }, issue);
     }
 
     /// Passes over white space and comments.
@@ -158,7 +153,7 @@ impl Scanner<'_> {
             }
             None => {
                 if !self.comments_open {
-                    self.warn(0, "a comment has no end; read as if it were not there");
+                    self.warn(0, ReadIssue::CommentUnterminated);
                 }
                 self.comments_open = true;
                 self.at += 2;
@@ -199,7 +194,7 @@ impl Scanner<'_> {
                         _ if in_data => {
                             self.warn(
                                 0,
-                                format!("{} is no entity; passed over", String::from_utf8_lossy(&name)),
+                                ReadIssue::NotAnEntity { word: String::from_utf8_lossy(&name).into_owned() },
                             );
                         }
                         _ => {}
@@ -210,17 +205,14 @@ impl Scanner<'_> {
                 _ => {
                     junk += 1;
                     if junk == 1 {
-                        self.warn(0, "bytes that belong to no statement; passed over");
+                        self.warn(0, ReadIssue::StrayBytes);
                     }
                     self.resynchronise();
                 }
             }
         }
         if !ended && in_data {
-            self.lose(
-                0,
-                "the file is truncated: it ends before its DATA section does; what is complete was read",
-            );
+            self.lose(0, ReadIssue::FileTruncated);
         }
     }
 
@@ -264,12 +256,12 @@ impl Scanner<'_> {
         let line = self.line;
         self.at += 1;
         let Some(id) = self.digits() else {
-            self.warn(0, "# without an entity number; statement passed over");
+            self.warn(0, ReadIssue::NoEntityNumber);
             return self.skip_statement();
         };
         self.blank();
         if self.bytes.get(self.at) != Some(&b'=') {
-            self.warn(id, "entity number without =; statement passed over");
+            self.warn(id, ReadIssue::NoEqualsSign);
             return self.skip_statement();
         }
         self.at += 1;
@@ -310,17 +302,17 @@ impl Scanner<'_> {
         self.blank();
         if self.bytes.get(self.at) != Some(&b'(') {
             if self.at < self.bytes.len() {
-                self.warn(id, "entity without attributes; passed over");
+                self.warn(id, ReadIssue::NoAttributes);
             }
             return self.skip_statement();
         }
         let offset = self.at as u64;
         match self.record() {
             End::OfFile => {
-                self.lose(id, "the file is truncated within this entity; it is left out");
+                self.lose(id, ReadIssue::EntityTruncated);
                 return;
             }
-            End::Early => self.warn(id, "a closing parenthesis is missing"),
+            End::Early => self.warn(id, ReadIssue::ParenthesisMissing),
             End::Closed => self.terminator(id),
         }
         self.out.entries.push(Entry { id, offset, line, kw });
@@ -332,7 +324,7 @@ impl Scanner<'_> {
         match self.bytes.get(self.at) {
             Some(b';') => self.at += 1,
             None => {}
-            Some(_) => self.warn(id, "the ; behind this entity is missing"),
+            Some(_) => self.warn(id, ReadIssue::SemicolonMissing),
         }
     }
 

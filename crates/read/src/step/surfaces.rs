@@ -5,7 +5,8 @@ use super::bspline::Knots;
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
-use crate::build::replace_zero_weights;
+use crate::assemble::replace_zero_weights;
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DVec3, NurbsSurface, Surface};
 
 /// The parts of a spline surface as an entity states them.
@@ -69,13 +70,17 @@ impl Geometry<'_> {
                 let basis = args.reference()?;
                 self.nested(ix, |geometry| geometry.build_surface(basis))
             }
-            _ => Err(doc.bad(ix, "is not a surface that this reader knows")),
+            _ => Err(doc.unknown(ix, "a surface")),
         }
     }
 
     /// A radius of a surface. Negative ones keep their sign, see [`crate::settle_surfaces`]; zero is refused.
-    fn radius(&self, ix: Ix, what: &str, value: f64) -> Res<f64> {
-        if value == 0.0 { Err(self.doc.bad(ix, format!("the {what} is zero"))) } else { Ok(value) }
+    fn radius(&self, ix: Ix, what: &'static str, value: f64) -> Res<f64> {
+        if value == 0.0 {
+            Err(self.doc.bad(ix, ReadIssue::BadValue { what, value: Real(0.0) }))
+        } else {
+            Ok(value)
+        }
     }
 
     /// CONICAL_SURFACE(name, position, radius, semi_angle). A negative angle opens the other way.
@@ -84,7 +89,7 @@ impl Geometry<'_> {
         let radius = args.real()?;
         let half_angle = args.real()? * self.units.angle_rad;
         if half_angle == 0.0 {
-            self.doc.warn(ix, "the half angle is zero; read as a cylinder");
+            self.doc.warn(ix, ReadIssue::ConeIsCylinder);
             return Ok(Surface::Cylinder { frame, radius: self.radius(ix, "radius", radius)? });
         }
         Ok(Surface::Cone { frame, radius, half_angle })
@@ -92,10 +97,10 @@ impl Geometry<'_> {
 
     fn spline_surface(&mut self, ix: Ix) -> Res<Surface> {
         let SplineSurface { degree, mut rows, knots, weights } = self.spline_surface_data(ix)?;
-        let bad = |message: String| self.doc.bad(ix, message);
+        let bad = |issue: ReadIssue| self.doc.bad(ix, issue);
         let count_v = rows.first().map_or(0, Vec::len);
         if rows.iter().any(|row| row.len() != count_v) {
-            return Err(bad("rows of the control net differ in length".into()));
+            return Err(bad(ReadIssue::RowsDiffer));
         }
         let vectors = [
             knots[0].vector(degree[0], rows.len()).map_err(bad)?,
@@ -104,15 +109,19 @@ impl Geometry<'_> {
         let trim = |rows: Vec<Vec<f64>>| flatten(&vectors, rows);
         let mut weights = match weights {
             Some(w) if w.len() != rows.len() || w.iter().any(|row| row.len() != count_v) => {
-                return Err(bad("the weights do not fit the control net".into()));
+                return Err(bad(ReadIssue::Count {
+                    what: "weights",
+                    found: w.iter().map(Vec::len).sum(),
+                    expected: rows.len() * count_v,
+                }));
             }
             weights => weights.map(trim),
         };
         if vectors.iter().any(|vector| vector.repaired()) {
-            self.doc.warn(ix, "an end knot's multiplicity is over the degree + 1; control points without effect are left out");
+            self.doc.warn(ix, ReadIssue::SurplusKnots);
         }
         if weights.as_deref_mut().is_some_and(replace_zero_weights) {
-            self.doc.warn(ix, "a weight is zero; replaced by one too small to matter");
+            self.doc.warn(ix, ReadIssue::ZeroWeight);
         }
         let points = flatten(&vectors, std::mem::take(&mut rows));
         let [u, v] = vectors;
@@ -136,7 +145,7 @@ impl Geometry<'_> {
         let leaves = args.leaves();
         let leaf = |kw| leaves.iter().find(|(name, _)| *name == kw).map(|(_, args)| args.clone());
         let Some(mut head) = leaf(Kw::BSplineSurface) else {
-            return Err(doc.bad(ix, "is not a surface that this reader knows"));
+            return Err(doc.unknown(ix, "a surface"));
         };
         let (degree, rows) = self.surface_head(&mut head)?;
         let knots = match leaf(Kw::BSplineSurfaceWithKnots) {
@@ -156,7 +165,10 @@ impl Geometry<'_> {
     fn surface_head(&mut self, args: &mut Args<'_>) -> Res<([usize; 2], Vec<Vec<DVec3>>)> {
         let degree = [args.integer()?, args.integer()?];
         let [Ok(u), Ok(v)] = degree.map(usize::try_from) else {
-            return Err(args.wrong(format!("degrees {degree:?} are negative")));
+            return Err(args.wrong(ReadIssue::BadValue {
+                what: "degree",
+                value: Real(degree[0].min(degree[1]) as f64),
+            }));
         };
         let mut list = args.list()?;
         let mut rows = Vec::new();

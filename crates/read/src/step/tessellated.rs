@@ -5,7 +5,7 @@ use super::builder::Builder;
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
-use chordal_brep::{Source, TessellatedItem};
+use chordal_brep::{ReadIssue, Source, TessellatedItem};
 use chordal_nurbs::DVec3;
 
 /// Sets within sets deeper than this refer in a circle.
@@ -50,9 +50,9 @@ impl Builder<'_> {
             self.triangles(ix, &mut item)?;
         }
         if item.triangles.is_empty() {
-            self.doc.warn(ix, "holds no triangles");
+            self.doc.warn(ix, ReadIssue::NoTriangles);
         } else {
-            self.part.tessellated.push(item);
+            self.build.part.tessellated.push(item);
         }
         Ok(true)
     }
@@ -77,7 +77,7 @@ impl Builder<'_> {
                 let result = self.triangles(member, &mut own);
                 match result {
                     Err(bad) => self.lose_bad(&bad),
-                    Ok(()) if color.is_some() && color != item.color => self.part.tessellated.push(own),
+                    Ok(()) if color.is_some() && color != item.color => self.build.part.tessellated.push(own),
                     Ok(()) => append(item, own),
                 }
             }
@@ -106,7 +106,7 @@ impl Builder<'_> {
             n if n == item.points.len() => normals,
             0 => Vec::new(),
             n => {
-                self.doc.warn(ix, format!("{n} normals for {} points; left out", item.points.len()));
+                self.doc.warn(ix, ReadIssue::NormalsIgnored { found: n, expected: item.points.len() });
                 Vec::new()
             }
         };
@@ -142,9 +142,7 @@ fn is_faceted(kw: Kw) -> bool {
 
 fn pick(args: &Args<'_>, points: &[DVec3], index: i64) -> Res<DVec3> {
     let found = usize::try_from(index - 1).ok().and_then(|i| points.get(i));
-    found
-        .copied()
-        .ok_or_else(|| args.wrong(format!("point {index} lies outside the list of {}", points.len())))
+    found.copied().ok_or_else(|| args.wrong(ReadIssue::NotFound { what: "point", number: index as i64 }))
 }
 
 /// Corners counted from one; degenerate triangles and those with a corner outside the list are left out.

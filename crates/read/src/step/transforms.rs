@@ -4,6 +4,7 @@ use super::document::{Doc, Ix, Res};
 use super::geometry::Geometry;
 use super::keyword::Kw;
 use super::units::Units;
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DAffine3, DVec3, Frame};
 
 /// One side of a transformation: the units in which an item is written, in millimetres per unit.
@@ -19,10 +20,14 @@ pub(crate) fn between(doc: &Doc<'_>, from: Side, to: Side) -> Res<DAffine3> {
     let source = placement(doc, from.item)?;
     let target = placement(doc, to.item)?;
     if source.matrix3.determinant().abs() < 1e-30 {
-        return Err(doc.bad(from.item, "is a placement that flattens space"));
+        return Err(doc.bad(from.item, ReadIssue::FlatPlacement));
     }
     let placed = target * scale * source.inverse();
-    if placed.is_finite() { Ok(placed) } else { Err(doc.bad(to.item, "is no finite placement")) }
+    if placed.is_finite() {
+        Ok(placed)
+    } else {
+        Err(doc.bad(to.item, ReadIssue::NotFinite { what: "placement" }))
+    }
 }
 
 /// The transformation that an axis placement or a transformation operator stands for.
@@ -56,10 +61,10 @@ fn operator_of_leaves(geometry: &mut Geometry<'_>, ix: Ix) -> Res<DAffine3> {
     let Some((_, mut own)) =
         leaves.iter().find(|(kw, _)| *kw == Kw::CartesianTransformationOperator3d).cloned()
     else {
-        return Err(doc.bad(ix, "is not a placement that this reader knows"));
+        return Err(doc.unknown(ix, "a placement"));
     };
     let Some((_, mut base)) = leaves.into_iter().find(|(_, args)| args.left() >= 3) else {
-        return Err(doc.bad(ix, "is a transformation without an origin"));
+        return Err(doc.bad(ix, ReadIssue::Missing { what: "origin" }));
     };
     let [axis1, axis2] = [base.optional_reference(), base.optional_reference()];
     let origin = geometry.point(base.reference()?)?;
@@ -83,7 +88,7 @@ fn assemble(
     let mirrored = given[1].is_some_and(|y| y.dot(frame.y) < 0.0);
     let y = if mirrored { -frame.y } else { frame.y };
     if scale == 0.0 {
-        return Err(geometry.doc.bad(ix, "scales by zero"));
+        return Err(geometry.doc.bad(ix, ReadIssue::BadValue { what: "scale", value: Real(0.0) }));
     }
     let axes = glam::DMat3::from_cols(frame.x * scale, y * scale, frame.z * scale);
     Ok(DAffine3::from_mat3_translation(axes, origin))

@@ -1,14 +1,14 @@
 //! The assembly tree: products and mapped items unfolded into nodes, representations turned into parts.
 
 use super::builder::Builder;
-use super::document::{Bad, Doc, Ix, Res};
+use super::document::{Doc, Ix, Res};
 use super::keyword::Kw;
 use super::products::{Products, Relation, Usage};
 use super::representation::{Representation, is_shape};
 use super::styles::Styles;
 use super::transforms::{self, Side};
 use super::units::Units;
-use chordal_brep::{Color, Node, NodeId, Part, PartId, Source};
+use chordal_brep::{Color, Issue, Node, NodeId, Part, PartId, ReadIssue, Source};
 use chordal_nurbs::{DAffine3, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
@@ -16,7 +16,7 @@ use std::rc::Rc;
 /// A tree that unfolds to more nodes than this is cut off.
 const MAX_NODES: usize = 1_000_000;
 /// Assemblies nest a few dozen levels at most.
-const MAX_DEPTH: usize = 256;
+const MAX_DEPTH: u32 = 256;
 
 /// A representation as the tree needs it, read once.
 #[derive(Debug)]
@@ -108,7 +108,7 @@ impl<'d> Tree<'d> {
             && let Some(&first) = self.products.definitions.first()
         {
             if tops.is_empty() {
-                self.doc.warn(first, "every product is part of another; this one is taken for the whole");
+                self.doc.warn(first, ReadIssue::NoTopProduct);
             }
             self.root_product(first);
         }
@@ -191,10 +191,7 @@ impl<'d> Tree<'d> {
     fn new_node(&mut self, name: String, ix: Ix) -> Option<NodeId> {
         if self.nodes.len() >= MAX_NODES {
             if !self.cut_off {
-                self.doc.lose(
-                    ix,
-                    format!("the assembly unfolds to more than {MAX_NODES} nodes; the rest is left out"),
-                );
+                self.doc.lose(ix, ReadIssue::AssemblyTooLarge { nodes: MAX_NODES });
             }
             self.cut_off = true;
             return None;
@@ -215,12 +212,11 @@ impl<'d> Tree<'d> {
     /// Enters an entity on the way down; false where it is already on the way, or the way is too long.
     fn enter(&mut self, ix: Ix) -> bool {
         if self.path.contains(&ix) {
-            self.doc.lose(ix, "the assembly contains itself; cut off here");
+            self.doc.lose(ix, ReadIssue::AssemblyRecursive);
             return false;
         }
-        if self.path.len() >= MAX_DEPTH {
-            self.doc
-                .lose(ix, format!("the assembly is nested more than {MAX_DEPTH} levels deep; cut off here"));
+        if self.path.len() >= MAX_DEPTH as usize {
+            self.doc.lose(ix, ReadIssue::AssemblyTooDeep { levels: MAX_DEPTH });
             return false;
         }
         self.path.push(ix);
@@ -292,7 +288,7 @@ impl<'d> Tree<'d> {
         let [item_1, item_2] = [args.reference()?, args.reference()?];
         let (mut ours, mut theirs) = if child_is_first { (item_1, item_2) } else { (item_2, item_1) };
         if self.crossed(child, parent, ours, theirs) {
-            self.doc.warn(transformation, "its two items belong to the other representation each; exchanged");
+            self.doc.warn(transformation, ReadIssue::PlacementExchanged);
             std::mem::swap(&mut ours, &mut theirs);
         }
         let (from, to) =
@@ -333,7 +329,7 @@ impl<'d> Tree<'d> {
     fn usage_transform(&mut self, usage: &Usage, parent: Ix, child_mm: f64, parent_mm: f64) -> DAffine3 {
         let unplaced = DAffine3::from_scale(DVec3::splat(child_mm / parent_mm));
         let Some((_, relation)) = self.products.placements.get(&usage.ix).copied() else {
-            self.doc.warn(usage.ix, "nothing places this component; it is put at the origin");
+            self.doc.warn(usage.ix, ReadIssue::ComponentAtOrigin { cause: None });
             return unplaced;
         };
         let (of_child, of_parent) = (self.product_info(usage.child), self.product_info(parent));
@@ -345,7 +341,8 @@ impl<'d> Tree<'d> {
         match self.relation_transform(&relation, child) {
             Ok(transform) => transform,
             Err(bad) => {
-                self.doc.warn(usage.ix, format!("the component is put at the origin: {bad}"));
+                let cause = Some(bad.into_cause(self.doc.source(usage.ix)));
+                self.doc.warn(usage.ix, ReadIssue::ComponentAtOrigin { cause });
                 unplaced
             }
         }
@@ -498,7 +495,7 @@ impl<'d> Tree<'d> {
             }
             node.transform = DAffine3::from_scale(DVec3::splat(mm));
             self.roots.push(id);
-            doc.warn(rep, "no product leads to this shape; it is a root of its own");
+            doc.warn(rep, ReadIssue::ShapeWithoutProduct);
         }
     }
 
@@ -526,7 +523,7 @@ impl<'d> Tree<'d> {
             let items = list();
             let Some(&first) = items.first() else { continue };
             if let Some(part) = self.build_part(&items, context, String::new(), doc.source(first)) {
-                doc.warn(first, "the file has no product structure; its bodies are read as they are");
+                doc.warn(first, ReadIssue::NoProducts);
                 if let Some(id) = self.new_node(String::new(), first) {
                     let mm = self.units_of(context).length_mm;
                     self.nodes[id.index()].part = Some(part);
@@ -539,8 +536,8 @@ impl<'d> Tree<'d> {
     }
 
     /// The first thing that went wrong, for a file that yields nothing.
-    pub(crate) fn first_problem(&self) -> Option<Bad> {
-        self.doc.first_warning().map(|warning| Bad::new(warning.source, warning.message))
+    pub(crate) fn first_problem(&self) -> Option<Issue> {
+        self.doc.notes.first()
     }
 }
 

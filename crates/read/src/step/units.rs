@@ -3,6 +3,7 @@
 use super::args::Kind;
 use super::document::{Doc, Ix};
 use super::keyword::Kw;
+use chordal_brep::{Millimetres, ReadIssue};
 
 /// Units and accuracy of one context.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,11 @@ enum Unit {
 }
 
 impl Units {
+    /// A length in the file's unit, for messages.
+    pub(crate) fn millimetres(&self, length: f64) -> Millimetres {
+        Millimetres(length * self.length_mm)
+    }
+
     /// The units of a context entity; what it does not say is millimetres and radians.
     pub(crate) fn of_context(doc: &Doc<'_>, context: Ix) -> Self {
         let mut units = Self::default();
@@ -53,7 +59,7 @@ impl Units {
             }
         }
         if !found_length {
-            doc.warn(context, "the context names no length unit; millimetres are assumed");
+            doc.warn(context, ReadIssue::UnitMissing);
         }
         if let Ok(Some(mut args)) = doc.find_leaf(context, Kw::GlobalUncertaintyAssignedContext) {
             let stated = args.references_or_warn();
@@ -75,7 +81,7 @@ fn uncertainty(doc: &Doc<'_>, ix: Ix, length_mm: f64) -> Option<f64> {
 
 fn read_unit(doc: &Doc<'_>, ix: Ix, depth: u32) -> Unit {
     if depth > MAX_CHAIN {
-        doc.warn(ix, "the unit is defined by itself; left out");
+        doc.notes.warn(doc.source(ix), ReadIssue::Recursive { keyword: doc.word(ix), levels: MAX_CHAIN });
         return Unit::Other;
     }
     let kinds = doc.kinds(ix);
@@ -101,7 +107,7 @@ fn read_unit(doc: &Doc<'_>, ix: Ix, depth: u32) -> Unit {
             Some(b"METRE") => Unit::Length(factor * 1000.0, format!("{prefix_name}m")),
             Some(b"RADIAN") => Unit::Angle(factor),
             _ if length || angle => {
-                doc.warn(ix, "an SI unit without a known name; left out");
+                doc.warn(ix, ReadIssue::UnitUnknown { name: String::new(), assumed: "" });
                 Unit::Other
             }
             _ => Unit::Other,
@@ -146,8 +152,14 @@ fn named(doc: &Doc<'_>, ix: Ix, name: &str) -> Unit {
         "degree" | "deg" => Unit::Angle(std::f64::consts::PI / 180.0),
         _ => Unit::Other,
     };
-    let what = if matches!(unit, Unit::Other) { "left out" } else { "taken by its name" };
-    doc.warn(ix, format!("the conversion factor of unit {name:?} cannot be read; {what}"));
+    let name = name.to_owned();
+    doc.warn(
+        ix,
+        match unit {
+            Unit::Other => ReadIssue::UnitUnknown { name, assumed: "" },
+            _ => ReadIssue::UnitByName { name },
+        },
+    );
     unit
 }
 

@@ -1,7 +1,8 @@
 //! Pieces of parameter curves as a closed chain, cut at its corners.
 
 use super::{Piece, Scale, TrimLoop};
-use chordal_brep::Warning;
+use crate::assemble::Notes;
+use chordal_brep::{Percent, ReadIssue};
 use chordal_nurbs::{DVec2, Range};
 
 /// Ends of pieces nearer together than this share of the domain meet: files of 32-bit numbers round to about this.
@@ -58,19 +59,19 @@ impl Chain {
 /// Closes a loop; `None` where it has no extent.
 ///
 /// # Errors
-/// A sentence, where the pieces make no loop.
+/// Where the pieces make no loop.
 pub(super) fn closed(
     trim: &TrimLoop,
     index: usize,
     scale: &Scale,
-    warnings: &mut Vec<Warning>,
-) -> Result<Option<Chain>, String> {
+    notes: &Notes,
+) -> Result<Option<Chain>, ReadIssue> {
     let number = index + 1;
     let mut given = Vec::with_capacity(trim.pieces.len());
     for piece in &trim.pieces {
         let sound = piece.range.is_finite() && piece.range.length() > 0.0;
         if !sound || !(0..=8).all(|k| piece.at(f64::from(k) / 8.0).is_finite()) {
-            return Err(format!("its trim loop {number} has a piece without a finite extent"));
+            return Err(ReadIssue::TrimPieceNotFinite { trim: number });
         }
         let still = (1..=8).all(|k| gap(piece.at(0.0), piece.at(f64::from(k) / 8.0), scale) <= MEETS * 1e-3);
         if !still {
@@ -99,11 +100,8 @@ pub(super) fn closed(
         pieces.push(Piece::line(end, start));
     }
     if widest > 0.0 {
-        let message = format!(
-            "trim loop {number} is open (by up to {:.2} % of the parameter range) and was closed by straight lines",
-            100.0 * widest
-        );
-        warnings.push(Warning { source: trim.source, message, lost: false });
+        let open = ReadIssue::TrimLoopOpen { trim: number, gap: Percent::of(widest) };
+        notes.warn(trim.source, open);
     }
     Ok(Some(Chain { pieces, role: trim.role, source: trim.source, winds, touches: false }))
 }

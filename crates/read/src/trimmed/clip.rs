@@ -9,6 +9,7 @@
 use super::chain::Chain;
 use super::nest::{area, contains};
 use super::{Piece, Role, Scale};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{BezierCurve, Curve2, DVec2, Range};
 use std::sync::Arc;
 
@@ -33,7 +34,7 @@ pub(super) struct Outline {
 ///
 /// # Errors
 /// A sentence, where nothing of the surface remains or a loop cannot be cut.
-pub(super) fn to_domain(outlines: Vec<Outline>, scale: &Scale) -> Result<Vec<Chain>, String> {
+pub(super) fn to_domain(outlines: Vec<Outline>, scale: &Scale) -> Result<Vec<Chain>, ReadIssue> {
     let clippable = scale.uv.is_finite() && scale.bounded == [true; 2];
     let leaves = |o: &Outline| o.polygon.iter().any(|&p| beyond(p) > ON_BORDER);
     let touches = |o: &Outline| !o.outer && o.polygon.windows(2).any(|pair| along_border(pair[0], pair[1]));
@@ -63,7 +64,7 @@ pub(super) fn to_domain(outlines: Vec<Outline>, scale: &Scale) -> Result<Vec<Cha
                 kept.push(border(outline.chain, scale));
             }
             (true, true) => outer_gone = true,
-            (true, false) if around => return Err("its trims leave nothing of the surface".into()),
+            (true, false) if around => return Err(ReadIssue::NothingTrimmed),
             (true, false) => {}
         }
     }
@@ -72,7 +73,7 @@ pub(super) fn to_domain(outlines: Vec<Outline>, scale: &Scale) -> Result<Vec<Cha
         chords.clear();
     }
     if chords.is_empty() && outer_gone && outers == 0 {
-        return Err("its trims lie beyond the surface".into());
+        return Err(ReadIssue::TrimsBeyond);
     }
     kept.extend(trace(chords, scale)?);
     Ok(kept)
@@ -109,7 +110,7 @@ struct Chord {
 }
 
 /// The parts of a chain inside the domain, and whether all of it is.
-fn chords_of(outline: &Outline, scale: &Scale) -> Result<(Vec<Chord>, bool), String> {
+fn chords_of(outline: &Outline, scale: &Scale) -> Result<(Vec<Chord>, bool), ReadIssue> {
     let chain = &outline.chain;
     let mut parts: Vec<(Piece, bool)> = Vec::new();
     for piece in &chain.pieces {
@@ -123,10 +124,7 @@ fn chords_of(outline: &Outline, scale: &Scale) -> Result<(Vec<Chord>, bool), Str
     let mut chords = Vec::new();
     for run in parts.chunk_by(|a, b| a.1 == b.1).filter(|run| run[0].1) {
         let pieces: Vec<Piece> = run.iter().map(|(piece, _)| piece.clone()).collect();
-        let place = |p: DVec2| {
-            place_on_border(scale.unit(p))
-                .ok_or("one of its trim loops cannot be cut at the surface's border")
-        };
+        let place = |p: DVec2| place_on_border(scale.unit(p)).ok_or(ReadIssue::TrimNotCut);
         let from = place(pieces[0].at(0.0))?;
         let to = place(pieces[pieces.len() - 1].at(1.0))?;
         let like = Chain { pieces: Vec::new(), ..chain.clone() };
@@ -167,7 +165,7 @@ fn at_border(place: f64, scale: &Scale) -> DVec2 {
 }
 
 /// Joins chords along the border.
-fn trace(chords: Vec<Chord>, scale: &Scale) -> Result<Vec<Chain>, String> {
+fn trace(chords: Vec<Chord>, scale: &Scale) -> Result<Vec<Chain>, ReadIssue> {
     let mut used = vec![false; chords.len()];
     let mut outlines = Vec::new();
     for first in 0..chords.len() {
@@ -191,7 +189,7 @@ fn trace(chords: Vec<Chord>, scale: &Scale) -> Result<Vec<Chain>, String> {
                 break;
             }
             if used[next] {
-                return Err("its trim loops cross each other beyond the surface's border".into());
+                return Err(ReadIssue::TrimsCrossBeyond);
             }
             at = next;
         }
@@ -220,11 +218,8 @@ fn along(from: f64, way: f64, start: DVec2, end: DVec2, scale: &Scale) -> Vec<Pi
 }
 
 /// The piece, cut where it crosses the lines that bound the domain, in running order.
-fn split(piece: &Piece, scale: &Scale) -> Result<Vec<Piece>, String> {
-    let nurbs = piece
-        .curve
-        .to_nurbs(piece.range)
-        .map_err(|e| format!("a trim loop cannot be cut at the surface's border: {e}"))?;
+fn split(piece: &Piece, scale: &Scale) -> Result<Vec<Piece>, ReadIssue> {
+    let nurbs = piece.curve.to_nurbs(piece.range).map_err(|_| ReadIssue::TrimNotCut)?;
     let reach = nurbs.points().iter().fold(f64::NEG_INFINITY, |far, &p| far.max(beyond(scale.unit(p))));
     if reach < -AT_BORDER && nurbs.weights().is_none_or(|w| w.iter().all(|w| *w > 0.0)) {
         return Ok(vec![piece.clone()]);

@@ -6,6 +6,7 @@ use super::natural;
 use super::untangle::{Untangled, untangled};
 use super::{Role, Scale};
 use crate::Winding;
+use chordal_brep::{Percent, ReadIssue};
 use chordal_nurbs::{DVec2, Surface};
 
 /// Loops that follow the surface's border within this share of the domain are the border.
@@ -28,8 +29,8 @@ pub(super) struct Groups {
 /// Tells outer loops and holes apart, and puts them together to faces.
 ///
 /// # Errors
-/// A sentence, where the loops bound no region of the surface.
-pub(super) fn groups(surface: &Surface, chains: Vec<Chain>, scale: &Scale) -> Result<Groups, String> {
+/// Where the loops bound no region of the surface.
+pub(super) fn groups(surface: &Surface, chains: Vec<Chain>, scale: &Scale) -> Result<Groups, ReadIssue> {
     let mut chains = chains;
     // By the even convention what no loop goes around belongs to the face.
     let whole = chains.iter().any(is_even) && !by_the_odd_one(&mut chains, scale);
@@ -55,7 +56,7 @@ fn nested(
     chains: Vec<Chain>,
     whole: bool,
     scale: &Scale,
-) -> Result<Vec<Vec<Chain>>, String> {
+) -> Result<Vec<Vec<Chain>>, ReadIssue> {
     let (winding, plain): (Vec<Chain>, Vec<Chain>) = chains.into_iter().partition(|chain| chain.winds);
     let plain = clip::to_domain(told_apart(plain, scale), scale)?;
     let mut nested = Vec::with_capacity(plain.len());
@@ -65,11 +66,7 @@ fn nested(
         if !covers {
             let beyond = beyond(&polygon, scale);
             if beyond > BEYOND {
-                let percent = 100.0 * beyond;
-                return Err(format!(
-                    "its trim loop {} leaves the surface by {percent:.1} % of its range",
-                    i + 1
-                ));
+                return Err(ReadIssue::TrimLoopBeyond { trim: i + 1, by: Percent::of(beyond) });
             }
         }
         nested.push(Nested { area: area(&polygon), polygon, chain, covers });

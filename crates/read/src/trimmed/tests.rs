@@ -53,13 +53,13 @@ fn backwards(mut trim: TrimLoop) -> TrimLoop {
     trim
 }
 
-fn made(surface: &Arc<Surface>, trims: &[TrimLoop]) -> (Part, Vec<Warning>) {
+fn made(surface: &Arc<Surface>, trims: &[TrimLoop]) -> (Part, Vec<Issue>) {
     let mut part = Part::default();
-    let mut warnings = Vec::new();
-    let faces = add_faces(&mut part, surface, trims, &Look::default(), &mut warnings);
+    let notes = Notes::default();
+    let faces = add_faces(&mut part, surface, trims, &Look::default(), &notes);
     assert_eq!(faces.len(), part.faces.len());
     check(&part, surface);
-    (part, warnings)
+    (part, notes.take())
 }
 
 fn coedges(boundary: &Loop) -> &[Coedge] {
@@ -186,14 +186,15 @@ fn open_chains_are_closed_and_owned_up_to() {
     let (part, warnings) = made(&patch(), &[trim]);
     assert_eq!(coedges(&part.faces[0].loops[0]).len(), 4);
     assert!((area(&part, &part.faces[0].loops[0]) - 1.6 * 2.6).abs() < 1e-9);
-    assert!(warnings[0].message.contains("open (by up to 80.00 %"), "{warnings:?}");
+    let said = warnings[0].to_string();
+    assert!(said.contains("trim loop 1 is open by up to 80 % of the parameter range"), "{said}");
     // 32-bit rounding is no gap.
     let mut trim = rectangle([0.2, 0.2], [1.8, 2.8]);
     trim.pieces[2] = Piece::line(DVec2::new(1.8, 2.8000001), DVec2::new(0.2000001, 2.8));
     let mut part = Part::default();
-    let mut warnings = Vec::new();
-    add_faces(&mut part, &patch(), &[trim], &Look::default(), &mut warnings);
-    assert_eq!((part.edges.len(), part.vertices.len(), warnings.len()), (4, 4, 0));
+    let notes = Notes::default();
+    add_faces(&mut part, &patch(), &[trim], &Look::default(), &notes);
+    assert_eq!((part.edges.len(), part.vertices.len(), notes.take().len()), (4, 4, 0));
 }
 
 #[test]
@@ -248,8 +249,8 @@ fn a_loop_that_leaves_its_surface_is_cut_off_there() {
     let (part, _) = made(&patch(), &[rectangle([1.0, 1.0], [2.5, 2.0])]);
     assert_eq!(coedges(&part.faces[0].loops[0]).len(), 4);
     let (part, _) = made(&patch(), &[rectangle([2.1, 1.0], [2.5, 2.0])]);
-    let FaceGeometry::Failed(reason) = &part.faces[0].geometry else { panic!("a face was made") };
-    assert!(reason.contains("beyond the surface"), "{reason}");
+    let failure = part.faces[0].failure().expect("no face is made");
+    assert_eq!(failure.kind, ReadIssue::TrimsBeyond.into());
 }
 
 #[test]

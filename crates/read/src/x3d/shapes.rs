@@ -36,7 +36,9 @@ pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) -> bool {
         kind if is_solid(kind) => solid(walk, node, place),
         kind if is_polygons(kind) => polygons_of(walk, ix, place),
         "ElevationGrid" => elevation_grid(walk, node, place),
-        "Extrusion" => walk.stage.lose(node.source(), "Extrusion: swept polygons are not read; left out"),
+        "Extrusion" => {
+            walk.stage.notes.lose(node.source(), "Extrusion: swept polygons are not read; left out")
+        }
         _ => return false,
     }
     true
@@ -56,7 +58,7 @@ fn solid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
         _ => [node.number("bottomRadius", 1.0), node.number("height", 2.0), 1.0],
     };
     if !sizes.iter().all(|&s| s > 0.0) {
-        return walk.stage.lose(node.source(), format!("{}: it has no size; left out", node.kind));
+        return walk.stage.notes.lose(node.source(), format!("{}: it has no size; left out", node.kind));
     }
     let [a, b, _] = sizes;
     walk.stage.solid(&place.transform, &look, |part, look| match node.kind.as_str() {
@@ -94,7 +96,7 @@ fn polygons_of(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) {
     };
     if lost > 0 {
         let message = format!("{}: {lost} polygons without three corners of the list; left out", node.kind);
-        walk.stage.lose(node.source(), message);
+        walk.stage.notes.lose(node.source(), message);
     }
     walk.stage.triangles(points, triangles, &place.transform, &place.look(node));
 }
@@ -136,7 +138,7 @@ fn elevation_grid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
     let (columns, rows) = (node.count("xDimension", 0), node.count("zDimension", 0));
     let fits = columns.checked_mul(rows).is_some_and(|n| n <= heights.len());
     if !fits || columns < 2 || rows < 2 {
-        return walk.stage.lose(node.source(), "ElevationGrid: it has too few heights; left out");
+        return walk.stage.notes.lose(node.source(), "ElevationGrid: it has too few heights; left out");
     }
     if !walk.stage.afford(columns * rows, node.source()) {
         return;

@@ -43,12 +43,12 @@ pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) -> bool {
     };
     let trims = trims(graph, ix, &mut notes);
     for note in notes {
-        walk.stage.warn(node.source(), format!("{}: {note}", node.kind));
+        walk.stage.notes.warn(node.source(), format!("{}: {note}", node.kind));
     }
     match (made, trims) {
         (Ok(surface), Ok(trims)) => walk.stage.surface(&surface, &trims, &place.transform, &look),
         (Err(reason), _) | (_, Err(reason)) => {
-            walk.stage.failed(format!("{} {}: {reason}", node.source(), node.kind), &look);
+            walk.stage.failed(format!("{}: {reason}", node.kind).into(), &look);
         }
     }
     true

@@ -76,7 +76,7 @@ fn both_encodings_and_vrml97_say_the_same() {
         let FaceGeometry::Surface(surface) = &face.geometry else { panic!() };
         // (1, 2, 3) less the centre, doubled, turned, and back.
         assert!(surface.point(DVec2::ONE).distance(DVec3::new(2.0 - 4.0, 2.0, 9.0)) < 1e-12);
-        assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+        assert!(model.issues.is_empty(), "{:?}", model.issues);
     }
 }
 
@@ -101,8 +101,8 @@ fn contours_cut_holes() {
         .collect();
     assert_eq!(sizes, [4, 4, 3]);
     // The second contour was left open.
-    assert_eq!(model.warnings.len(), 1, "{:?}", model.warnings);
-    assert!(model.warnings[0].message.contains("trim loop 2 is open"));
+    assert_eq!(model.issues.len(), 1, "{:?}", model.issues);
+    assert!(model.issues[0].to_string().contains("trim loop 2 is open"));
 }
 
 #[test]
@@ -236,7 +236,7 @@ fn solids_and_polygons() {
     assert_eq!(items[1].triangles[0], [0, 2, 1]);
     assert_eq!(items[2].triangles, [[0, 1, 2], [1, 3, 2]]);
     assert_eq!(model.placements().len(), 3);
-    assert_eq!(model.warnings.iter().filter(|w| w.lost).count(), 2, "{:?}", model.warnings);
+    assert_eq!(model.issues.iter().filter(|w| w.is_error()).count(), 2, "{:?}", model.issues);
 }
 
 #[test]
@@ -303,5 +303,5 @@ fn nests_and_fans_of_uses_end() {
     }
     let model = read_bytes(text.as_bytes(), "fan").unwrap();
     assert!(model.placements().len() < 100_000);
-    assert!(model.warnings.iter().any(|w| w.lost));
+    assert!(model.issues.iter().any(|w| w.is_error()));
 }

@@ -87,6 +87,7 @@ impl<'a> Walk<'a> {
         if std::mem::replace(&mut self.active[ix as usize], true) {
             return self
                 .stage
+                .notes
                 .lose(node.source(), format!("{} is used inside itself; left out there", node.kind));
         }
         self.depth += 1;
@@ -133,6 +134,7 @@ impl<'a> Walk<'a> {
             }
             "Inline" => self
                 .stage
+                .notes
                 .lose(node.source(), format!("Inline {} is not followed", node.word("url")).as_str()),
             kind if GROUPS.contains(&kind) => {
                 let moves = matches!(kind, "Transform" | "CADPart" | "EspduTransform");
@@ -147,7 +149,7 @@ impl<'a> Walk<'a> {
                 }
             }
             "CoordinateDeformer" => {
-                self.stage.lose(
+                self.stage.notes.lose(
                     node.source(),
                     "CoordinateDeformer: shapes bent by a volume are not read; left out",
                 );
@@ -155,7 +157,7 @@ impl<'a> Walk<'a> {
             "NurbsSet" => {}
             _ if self.geometry(ix, place) => {}
             kind if graph.prototypes.get(kind).is_some_and(|p| p.external) => {
-                self.stage.lose(
+                self.stage.notes.lose(
                     node.source(),
                     format!("{kind} is a prototype of another file, which is not followed"),
                 );
@@ -214,7 +216,7 @@ impl<'a> Walk<'a> {
     /// Says something once for each kind of node.
     pub(super) fn note(&mut self, node: &Node, what: &str) {
         if self.noted.insert(node.kind.clone()) {
-            self.stage.warn(node.source(), format!("{}: {what}", node.kind));
+            self.stage.notes.warn(node.source(), format!("{}: {what}", node.kind));
         }
     }
 }

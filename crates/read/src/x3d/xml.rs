@@ -25,7 +25,7 @@ pub(super) fn parse(bytes: &[u8]) -> (Graph, String) {
                 let what = parser.element(&element);
                 if parser.open.len() >= MAX_DEPTH {
                     let source = parser.here();
-                    parser.graph.lose(
+                    parser.graph.notes.lose(
                         source,
                         format!("elements lie deeper than {MAX_DEPTH}; what comes after is left out"),
                     );
@@ -45,7 +45,7 @@ pub(super) fn parse(bytes: &[u8]) -> (Graph, String) {
             Ok(Event::Eof) => {
                 if !parser.open.is_empty() {
                     let source = parser.here();
-                    parser.graph.lose(source, "the file ends within its elements");
+                    parser.graph.notes.lose(source, "the file ends within its elements");
                 }
                 break;
             }
@@ -54,6 +54,7 @@ pub(super) fn parse(bytes: &[u8]) -> (Graph, String) {
                 let source = parser.here();
                 parser
                     .graph
+                    .notes
                     .lose(source, format!("no XML from here on ({error}); what comes after is left out"));
                 break;
             }
@@ -166,6 +167,7 @@ impl Parser {
                 None => {
                     let source = self.here();
                     self.graph
+                        .notes
                         .lose(source, format!("USE {name}: no node of this name comes before; left out"));
                 }
             }

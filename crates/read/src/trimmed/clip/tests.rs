@@ -1,5 +1,6 @@
+use crate::assemble::Notes;
 use crate::trimmed::{Piece, Role, Scale, TrimLoop, chain, nest};
-use chordal_brep::Source;
+use chordal_brep::{ReadIssue, Source};
 use chordal_nurbs::{Curve2, DVec2, DVec3, Frame2, NurbsSurface, Surface};
 use proptest::prelude::*;
 
@@ -26,14 +27,13 @@ impl Disc {
 }
 
 /// The area that the loops enclose, holes subtracted, in parameters.
-fn enclosed(trims: &[TrimLoop]) -> Result<f64, String> {
+fn enclosed(trims: &[TrimLoop]) -> Result<f64, ReadIssue> {
     let surface = patch();
     let scale = Scale::new(&surface, trims);
-    let mut warnings = Vec::new();
-    let chains =
-        trims.iter().enumerate().filter_map(|(i, t)| chain::closed(t, i, &scale, &mut warnings).unwrap());
+    let notes = Notes::default();
+    let chains = trims.iter().enumerate().filter_map(|(i, t)| chain::closed(t, i, &scale, &notes).unwrap());
     let groups = nest::groups(&surface, chains.collect(), &scale)?.faces;
-    assert!(warnings.is_empty(), "{warnings:?}");
+    assert!(notes.first().is_none(), "{:?}", notes.take());
     let loops = groups.iter().flatten();
     for c in loops.clone() {
         for (i, piece) in c.pieces.iter().enumerate() {
@@ -86,7 +86,7 @@ proptest! {
         let expected = counted(|p| discs.iter().any(|d| d.center.distance(p) < d.radius));
         match enclosed(&trims) {
             Ok(area) => prop_assert!((area - expected).abs() < 0.005, "{area}, expected {expected}"),
-            Err(why) => prop_assert!(expected < 1e-3 && why.contains("beyond the surface"), "{expected}: {why}"),
+            Err(why) => prop_assert!(expected < 1e-3 && why == ReadIssue::TrimsBeyond, "{expected}: {why}"),
         }
     }
 }
@@ -119,7 +119,7 @@ fn around_everything() {
     let around = [[0.0, -2.0], [4.0, -2.0], [4.0, 2.0], [0.0, 2.0]];
     assert!((enclosed(&[polygon(&around, Role::Outer)]).unwrap() - 4.0).abs() < 1e-12);
     let said = enclosed(&[polygon(&around, Role::Hole)]).unwrap_err();
-    assert!(said.contains("leave nothing"), "{said}");
+    assert_eq!(said, ReadIssue::NothingTrimmed);
 }
 
 #[test]

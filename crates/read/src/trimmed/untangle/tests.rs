@@ -1,6 +1,7 @@
 use crate::Winding;
+use crate::assemble::Notes;
 use crate::trimmed::{Piece, Role, Scale, TrimLoop, chain, meet, nest};
-use chordal_brep::Source;
+use chordal_brep::{ReadIssue, Source};
 use chordal_nurbs::{Curve2, DVec2, DVec3, Frame2, NurbsSurface, Surface};
 use proptest::prelude::*;
 
@@ -27,13 +28,12 @@ fn disc(center: (f64, f64), radius: f64, role: Role) -> TrimLoop {
 fn area(trims: &[TrimLoop]) -> f64 {
     let surface = patch();
     let scale = Scale::new(&surface, trims);
-    let mut warnings = Vec::new();
-    let chains =
-        trims.iter().enumerate().filter_map(|(i, t)| chain::closed(t, i, &scale, &mut warnings).unwrap());
+    let notes = Notes::default();
+    let chains = trims.iter().enumerate().filter_map(|(i, t)| chain::closed(t, i, &scale, &notes).unwrap());
     let faces = match nest::groups(&surface, chains.collect(), &scale) {
         Ok(groups) => groups.faces,
         Err(reason) => {
-            assert_eq!(reason, "its trims leave nothing of the surface");
+            assert_eq!(reason, ReadIssue::NothingTrimmed);
             return 0.0;
         }
     };

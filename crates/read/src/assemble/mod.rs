@@ -1,11 +1,13 @@
-//! What readers of boundary representations share: a part that grows, its warnings, loops that must close.
+//! What readers of boundary representations share: a part under construction, issues, loops that must close.
 
+mod bad;
 mod chain;
 mod merge;
 mod notes;
 mod placement;
 mod splines;
 
+pub(crate) use bad::{Bad, Res};
 pub(crate) use chain::{Chained, chained};
 pub(crate) use merge::merge_vertices;
 pub(crate) use notes::Notes;
@@ -32,6 +34,11 @@ pub(crate) struct PartBuilder {
 const SAME_VERTEX: f64 = 1e-6;
 
 impl PartBuilder {
+    /// Continues a part that has a name and a source only.
+    pub(crate) fn new(part: Part) -> Self {
+        Self { part, ..Self::default() }
+    }
+
     pub(crate) fn new_vertex(&mut self, point: DVec3, source: Source) -> VertexId {
         let id = VertexId::from(self.part.vertices.len());
         self.part.vertices.push(Vertex { point, source });
@@ -79,9 +86,36 @@ impl PartBuilder {
         self.part
     }
 
+    /// How many coedges of a loop do not end in the vertex where the next one starts.
+    pub(crate) fn breaks(&self, coedges: &[Coedge]) -> usize {
+        let next = coedges.iter().cycle().skip(1);
+        coedges.iter().zip(next).filter(|(a, b)| self.ends(a).1 != self.ends(b).0).count()
+    }
+
+    /// How many coedges of a loop end further than `stated` (or rounding) from where the next one starts.
+    pub(crate) fn gaps(&self, coedges: &[Coedge], stated: f64) -> usize {
+        let tolerance = self.joint_tolerance(coedges, stated);
+        let next = coedges.iter().cycle().skip(1);
+        let apart =
+            |a: VertexId, b: VertexId| a != b && self.point_of(a).distance(self.point_of(b)) > tolerance;
+        coedges.iter().zip(next).filter(|(a, b)| apart(self.ends(a).1, self.ends(b).0)).count()
+    }
+
+    /// Merges the vertices where consecutive coedges of a loop meet in one place but not in one vertex.
+    pub(crate) fn merge_meeting(&mut self, coedges: &[Coedge], stated: f64) {
+        let tolerance = self.joint_tolerance(coedges, stated);
+        for i in 0..coedges.len() {
+            let (a, b) = (self.ends(&coedges[i]).1, self.ends(&coedges[(i + 1) % coedges.len()]).0);
+            if self.point_of(a).distance(self.point_of(b)) <= tolerance {
+                self.merge(a, b);
+            }
+        }
+    }
+
     /// Closes a loop whose coedges are in order: ends within `stated` (or rounding) of each other become one vertex,
-    /// wider gaps are bridged by straight edges. Returns the widest gap bridged, 0 where there was none.
+    /// wider gaps are closed with straight edges. Returns the widest of these gaps, 0 where there is none.
     pub(crate) fn close(&mut self, coedges: &mut Vec<Coedge>, stated: f64, source: Source) -> f64 {
+        self.merge_meeting(coedges, stated);
         let tolerance = self.joint_tolerance(coedges, stated);
         let mut joined = Vec::with_capacity(coedges.len() + 2);
         let mut widest = 0.0f64;
@@ -89,12 +123,7 @@ impl PartBuilder {
             joined.push(coedges[i].clone());
             let (a, b) = (self.ends(&coedges[i]).1, self.ends(&coedges[(i + 1) % coedges.len()]).0);
             let gap = self.point_of(a).distance(self.point_of(b));
-            if a == b {
-                continue;
-            }
-            if gap <= tolerance {
-                self.merge(a, b);
-            } else {
+            if a != b && gap > tolerance {
                 widest = widest.max(gap);
                 joined.push(self.joint(a, b, source));
             }

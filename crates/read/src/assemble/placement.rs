@@ -1,5 +1,6 @@
 //! Placements as files round them.
 
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{DAffine3, DVec3};
 use glam::DMat3;
 
@@ -10,13 +11,13 @@ const ROUNDED: f64 = 1e-4;
 /// scale they have in the mean.
 ///
 /// # Errors
-/// A sentence, where the rows flatten space or are not finite.
-pub(crate) fn placement(rows: [[f64; 4]; 3]) -> Result<DAffine3, &'static str> {
+/// Where the rows flatten space or are not finite.
+pub(crate) fn placement(rows: [[f64; 4]; 3]) -> Result<DAffine3, ReadIssue> {
     let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
     let axes = DMat3::from_cols(column(0), column(1), column(2));
     let determinant = axes.determinant();
     if !(axes.is_finite() && column(3).is_finite()) || determinant.abs() < 1e-100 {
-        return Err("flattens space");
+        return Err(ReadIssue::FlatPlacement);
     }
     let scale = determinant.abs().cbrt();
     let mut unit = axes * (1.0 / scale);

@@ -1,17 +1,18 @@
 //! Spline data as files state them: knots with multiplicities, periodic forms, weights of zero.
 
+use chordal_brep::{ReadIssue, Real};
 /// The knots each repeated by its multiplicity. Nothing is allocated before they are known to add up to `expected`.
 pub(crate) fn expanded_knots(
     values: &[f64],
     multiplicities: &[i64],
     expected: usize,
-) -> Result<Vec<f64>, String> {
+) -> Result<Vec<f64>, ReadIssue> {
     if let Some(m) = multiplicities.iter().find(|&&m| m < 1) {
-        return Err(format!("a knot multiplicity is {m}"));
+        return Err(ReadIssue::BadValue { what: "knot multiplicity", value: Real(*m as f64) });
     }
     let total: i128 = multiplicities.iter().map(|&m| i128::from(m)).sum();
     if total != expected as i128 || values.len() != multiplicities.len() {
-        return Err(format!("the knot multiplicities add up to {total}, expected {expected}"));
+        return Err(ReadIssue::KnotSum { sum: i64::try_from(total).unwrap_or(i64::MAX), expected });
     }
     let repeated = values.iter().zip(multiplicities);
     Ok(repeated.flat_map(|(&value, &m)| std::iter::repeat_n(value, m as usize)).collect())
@@ -27,13 +28,16 @@ pub(crate) fn unrolled(
     multiplicities: &[i64],
     degree: usize,
     count: usize,
-) -> Result<(Vec<f64>, usize), String> {
+) -> Result<(Vec<f64>, usize), ReadIssue> {
     let (Some(&first), Some(&m0)) = (values.first(), multiplicities.first()) else {
-        return Err("a periodic spline has no knots".to_owned());
+        return Err(ReadIssue::TooFew { what: "knots", found: 0, least: 2 });
     };
     let m0 = usize::try_from(m0).unwrap_or(0);
     if degree == 0 || degree > 100 || m0 == 0 || m0 > degree + 1 {
-        return Err(format!("a periodic spline of degree {degree} begins with multiplicity {m0}"));
+        return Err(ReadIssue::BadValue {
+            what: "first knot multiplicity of a periodic spline",
+            value: Real(m0 as f64),
+        });
     }
     let inner = expanded_knots(values, multiplicities, count + m0)?;
     let period = values[values.len() - 1] - first;
