@@ -134,7 +134,7 @@ impl Surfaces {
     pub(crate) fn get(&self, place: usize) -> Sound<Arc<nurbs::Surface>> {
         match self.0.get(place) {
             Some(Ok(surface)) => Ok(surface.clone()),
-            Some(Err(why)) => Err(why.clone().within("surface", place as usize)),
+            Some(Err(why)) => Err(why.clone().within("surface", place)),
             None => Err(ReadIssue::NotFound { what: "surface", number: place as i64 }),
         }
     }

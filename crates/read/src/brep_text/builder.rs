@@ -60,7 +60,7 @@ impl<'d> Builder<'d> {
     /// The location of a use within a location.
     pub(crate) fn within(&mut self, outer: Loc, number: i64) -> Result<Loc, ReadIssue> {
         let inner = self.doc.locations.of_file(number);
-        let inner = inner.ok_or_else(|| ReadIssue::NotFound { what: "location", number })?;
+        let inner = inner.ok_or(ReadIssue::NotFound { what: "location", number })?;
         Ok(self.doc.locations.compose(outer, inner))
     }
 
@@ -116,7 +116,7 @@ impl<'d> Builder<'d> {
             });
         }
         let moved = patch.surface.transformed(&self.doc.locations.matrix(loc));
-        let moved = moved.ok_or_else(|| ReadIssue::NotTransformable { what: "surface" })?;
+        let moved = moved.ok_or(ReadIssue::NotTransformable { what: "surface" })?;
         let by = moved.factors();
         let trims = patch.trims.map(|b| UvBox::from_points([b.min * by, b.max * by]));
         Ok(PlacedPatch {
@@ -134,7 +134,7 @@ impl<'d> Builder<'d> {
             return Ok(curve.clone());
         }
         let moved = curve.transformed(&self.doc.locations.matrix(loc));
-        moved.ok_or_else(|| ReadIssue::NotTransformable { what: "curve" })
+        moved.ok_or(ReadIssue::NotTransformable { what: "curve" })
     }
 
     /// A curve of the file in parameter space, in the parameters of a patch.
@@ -145,7 +145,7 @@ impl<'d> Builder<'d> {
             return Err(ReadIssue::CurveUnbounded.within("curve in parameter space", number as usize));
         }
         let curve = scaled(&bounded.curve, range, patch.factors)
-            .ok_or_else(|| ReadIssue::NotTransformable { what: "curve in parameter space" })?;
+            .ok_or(ReadIssue::NotTransformable { what: "curve in parameter space" })?;
         Ok(Pcurve { curve: Arc::new(curve), range })
     }
 }

@@ -61,7 +61,7 @@ impl Builder<'_> {
 
     /// An edge that is a single point: a pole, an apex.
     fn point_edge(&mut self, ends: [Option<VertexId>; 2], source: Source) -> Result<EdgeId, ReadIssue> {
-        let vertex = ends[0].or(ends[1]).ok_or_else(|| ReadIssue::Missing { what: "vertex of the edge" })?;
+        let vertex = ends[0].or(ends[1]).ok_or(ReadIssue::Missing { what: "vertex of the edge" })?;
         self.build.merge(vertex, ends[1].unwrap_or(vertex));
         let range = Range::new(0.0, 1.0);
         Ok(self.build.push_edge(Edge { curve: None, range, start: vertex, end: vertex, source }))

@@ -134,7 +134,7 @@ impl Locations {
 
     /// What comes later in the list stands further out.
     fn times(&mut self, product: Loc, number: i64, power: i64) -> Result<Loc, ReadIssue> {
-        let factor = self.of_file(number).ok_or_else(|| ReadIssue::NotFound { what: "location", number })?;
+        let factor = self.of_file(number).ok_or(ReadIssue::NotFound { what: "location", number })?;
         if power.abs() > MOST_POWER {
             return Err(ReadIssue::BadValue { what: "power of a location", value: Real(power as f64) });
         }

@@ -130,7 +130,7 @@ fn cone(place: Placed, radius: f64, angle: f64) -> Result<Patch, ReadIssue> {
 
 fn revolution(profile: chordal_nurbs::Curve, axis_origin: DVec3, axis: DVec3) -> Result<Patch, ReadIssue> {
     let axis = axis.try_normalize().filter(|_| axis_origin.is_finite());
-    let axis = axis.ok_or_else(|| ReadIssue::ZeroVector { what: "axis of revolution" })?;
+    let axis = axis.ok_or(ReadIssue::ZeroVector { what: "axis of revolution" })?;
     Ok(Patch::plain(Surface::Revolution { profile, axis_origin, axis }))
 }
 

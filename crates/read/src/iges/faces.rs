@@ -152,8 +152,8 @@ impl Builder<'_, '_> {
     fn add_faces(&mut self, patch: &Patch, trims: &[TrimLoop], look: &Look) -> Vec<FaceId> {
         let look = Look { flipped: look.flipped != patch.reversed, ..look.clone() };
         let surface = Arc::new(patch.surface.clone());
-        let faces = trimmed::add_faces(&mut self.build.part, &surface, trims, &look, &self.doc.notes);
-        faces
+
+        trimmed::add_faces(&mut self.build.part, &surface, trims, &look, &self.doc.notes)
     }
 
     /// All boundaries as curves in space; `turns` says which way each runs in our parameters.

@@ -66,10 +66,7 @@ impl Direction<'_> {
             Basis::Matrix => (segments? - 1)
                 .checked_mul(self.step)
                 .and_then(|points| points.checked_add(n + 1))
-                .ok_or_else(|| ReadIssue::BadValue {
-                    what: "basis matrix step",
-                    value: Real(self.step as f64),
-                }),
+                .ok_or(ReadIssue::BadValue { what: "basis matrix step", value: Real(self.step as f64) }),
         }
     }
 

@@ -269,8 +269,7 @@ impl Reader {
         guessed.into_iter().for_each(|issue| self.notes.warn(source, issue));
         let faces = match (made, trims) {
             (Ok(surface), Ok(trims)) => {
-                let faces = add_faces(&mut self.part, &Arc::new(surface), &trims, &look, &self.notes);
-                faces
+                add_faces(&mut self.part, &Arc::new(surface), &trims, &look, &self.notes)
             }
             (Err(reason), _) | (_, Err(reason)) => vec![add_failed(&mut self.part, reason, &look)],
         };
@@ -373,5 +372,5 @@ fn curve_uses(words: &[&[u8]]) -> Result<Vec<CurveUse>, ReadIssue> {
     };
     let uses: Option<Vec<CurveUse>> = words.chunks(3).map(one).collect();
     uses.filter(|uses| !uses.is_empty())
-        .ok_or_else(|| ReadIssue::Missing { what: "list of ranges and curves in the trim" })
+        .ok_or(ReadIssue::Missing { what: "list of ranges and curves in the trim" })
 }

@@ -113,8 +113,8 @@ fn face(body: Bytes, part: &mut Part, look: &Look, notes: &Notes) -> Vec<FaceId>
             let trims: Vec<TrimLoop> =
                 trims.into_iter().map(|trim| TrimLoop { source: look.source, ..trim }).collect();
             let look = Look { flipped, ..look.clone() };
-            let faces = add_faces(part, &Arc::new(Surface::Nurbs(surface)), &trims, &look, notes);
-            faces
+
+            add_faces(part, &Arc::new(Surface::Nurbs(surface)), &trims, &look, notes)
         }
         Err(why) => vec![add_failed(part, why, look)],
     }

@@ -142,7 +142,7 @@ fn is_faceted(kw: Kw) -> bool {
 
 fn pick(args: &Args<'_>, points: &[DVec3], index: i64) -> Res<DVec3> {
     let found = usize::try_from(index - 1).ok().and_then(|i| points.get(i));
-    found.copied().ok_or_else(|| args.wrong(ReadIssue::NotFound { what: "point", number: index as i64 }))
+    found.copied().ok_or_else(|| args.wrong(ReadIssue::NotFound { what: "point", number: index }))
 }
 
 /// Corners counted from one; degenerate triangles and those with a corner outside the list are left out.
