@@ -1,9 +1,9 @@
 //! Points of faces evaluated on a GPU, in double precision, for the mesher.
 
 use chordal_gpu::{
-    DeviceChoice, Evaluator, Gpu, GpuError, Request, Samples, Search, SurfaceSet, Variant, Wanted,
+    DeviceChoice, Gpu, GpuError, KernelRunner, Request, Samples, Search, SurfaceSet, Variant, Wanted,
 };
-use chordal_nurbs::{DVec2, DVec3, NurbsSurface, SurfaceJet};
+use chordal_nurbs::{BulkEvaluator, DVec2, DVec3, NurbsSurface, SurfaceJet};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -15,7 +15,7 @@ const FEWEST: usize = 4096;
 #[derive(Debug)]
 pub struct GpuEvaluator {
     gpu: Gpu,
-    kernels: Evaluator<f64>,
+    kernels: KernelRunner<f64>,
     fewest: usize,
     points: AtomicUsize,
     dispatches: AtomicUsize,
@@ -29,7 +29,7 @@ impl GpuEvaluator {
     /// As [`Gpu::open`]; [`GpuError::Lacks`] for one without double precision in shaders: positions of vertices need it.
     pub fn open(choice: DeviceChoice) -> Result<Self, GpuError> {
         let gpu = Gpu::open(choice)?;
-        let kernels = Evaluator::new(&gpu, Variant::Bernstein, Search::Host)?;
+        let kernels = KernelRunner::new(&gpu, Variant::Bernstein, Search::Host)?;
         Ok(Self {
             gpu,
             kernels,
@@ -80,7 +80,7 @@ impl GpuEvaluator {
     }
 }
 
-impl chordal_tessellate::Evaluator for GpuEvaluator {
+impl BulkEvaluator for GpuEvaluator {
     fn jets(&self, surface: &NurbsSurface, at: &[DVec2]) -> Option<Vec<SurfaceJet>> {
         if at.len() < self.fewest || self.failure().is_some() {
             return None;

@@ -2,8 +2,8 @@
 
 use crate::{Job, JobError, JobOptions, OnProgress, Report, run, whole_file};
 use chordal_gpu::{
-    DeviceChoice, ExactRenderer, ExactScene, Gpu, GpuError, Legend, RenderOptions, Renderer, Style,
-    exact_model, mesh_scenery,
+    DeviceChoice, FaceRenderer, FaceScene, Gpu, GpuError, Legend, RenderOptions, Renderer, Style,
+    mesh_scenery, trimmed_model,
 };
 use chordal_tessellate::Cancel;
 use std::fmt;
@@ -103,11 +103,11 @@ pub fn render(job: &RenderJob) -> Result<Rendered, RenderError> {
         let (scenery, legend) = mesh_scenery(scene, model, job.picture.style);
         (renderer.render(&gpu, scene, &scenery, &job.picture)?, legend, None)
     } else {
-        let exact = exact_model(scene, model);
-        let faces = ExactRenderer::new(&gpu)?;
+        let exact = trimmed_model(scene, model);
+        let faces = FaceRenderer::new(&gpu)?;
         let meshed = exact.parts.iter().map(|p| p.meshed.len()).sum();
-        let mut on_device = ExactScene::new(&gpu, exact, (scene, model), job.picture.style)?;
-        let (picture, counts) = renderer.render_exact(&gpu, &faces, &mut on_device, &job.picture)?;
+        let mut on_device = FaceScene::new(&gpu, exact, (scene, model), job.picture.style)?;
+        let (picture, counts) = renderer.render_faces(&gpu, &faces, &mut on_device, &job.picture)?;
         (picture, None, Some(Evaluated { points: counts.points, drawn: counts.faces, meshed }))
     };
     write(&job.output, &picture.to_png()?)?;

@@ -3,10 +3,14 @@
 //!
 //!     cargo run --release -p chordal-gpu --example ways -- corpus/iv/duck.iv corpus/bracket.step
 
-use chordal::gpu::{
-    DeviceChoice, ExactRenderer, ExactScene, Gpu, Normals, RenderOptions, Renderer, Style, Trim, exact_model,
+#[path = "../tests/common/models.rs"]
+#[allow(dead_code)]
+mod models;
+
+use chordal_gpu::{
+    DeviceChoice, FaceRenderer, FaceScene, Gpu, Normals, RenderOptions, Renderer, Style, Trim, trimmed_model,
 };
-use chordal::{Job, JobOptions, Outcome, Tolerance};
+use models::{Meshed, meshed_file};
 use std::error::Error;
 use std::time::{Duration, Instant};
 
@@ -18,10 +22,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}, 1280 × 960, the fastest of {FRAMES} frames, ms: first / next\n", gpu.name());
     println!("| model | zoom | exact | trimmed by texture | interpolated normals |");
     println!("|---|---|---|---|---|");
-    let renderers = (Renderer::new(&gpu)?, ExactRenderer::new(&gpu)?);
+    let renderers = (Renderer::new(&gpu)?, FaceRenderer::new(&gpu)?);
     for path in std::env::args().skip(1) {
-        let options = JobOptions::default().with_tolerance(Tolerance::Percent(0.03));
-        let outcome = chordal::run(&Job::new(&path).with_options(options))?;
+        let outcome = meshed_file(path.as_ref(), 0.03);
         let name = std::path::Path::new(&path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         for zoom in [1.0, 4.0] {
             let picture = RenderOptions::default().with_zoom(zoom).with_lines(false);
@@ -41,17 +44,17 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The fastest first frame and the fastest later one.
 fn times(
     gpu: &Gpu,
-    (renderer, faces): &(Renderer, ExactRenderer),
-    outcome: &Outcome,
+    (renderer, faces): &(Renderer, FaceRenderer),
+    outcome: &Meshed,
     picture: &RenderOptions,
 ) -> Result<[Duration; 2], Box<dyn Error>> {
     let (scene, model) = (&outcome.scene, &outcome.model);
     let (mut first, mut next) = (Duration::MAX, Duration::MAX);
     for _ in 0..3 {
-        let mut on_device = ExactScene::new(gpu, exact_model(scene, model), (scene, model), Style::Shaded)?;
+        let mut on_device = FaceScene::new(gpu, trimmed_model(scene, model), (scene, model), Style::Shaded)?;
         let mut frame = || -> Result<Duration, Box<dyn Error>> {
             let started = Instant::now();
-            renderer.draw_exact(gpu, faces, &mut on_device, picture)?;
+            renderer.draw_faces(gpu, faces, &mut on_device, picture)?;
             gpu.wait()?;
             Ok(started.elapsed())
         };

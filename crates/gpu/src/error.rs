@@ -1,18 +1,16 @@
 //! Why the GPU could not be used; each message is one sentence.
 
+use crate::device_choice::{ADVICE, BACKENDS, DeviceChoice};
+
 /// What went wrong between here and the device.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
     /// No adapter at all, or none of the kind asked for.
-    #[error(
-        "no Vulkan device was found{asked}; install a graphics driver, or Mesa's software device: \
-         `apt-get install mesa-vulkan-drivers libvulkan1` (Debian, Ubuntu), `dnf install mesa-vulkan-drivers \
-         vulkan-loader` (Fedora), `pacman -S vulkan-swrast vulkan-icd-loader` (Arch)"
-    )]
+    #[error("no {BACKENDS} device was found{choice}; {ADVICE}")]
     NoDevice {
-        /// Empty, or what was asked for in words that continue the sentence.
-        asked: String,
+        /// The kind of adapter that was asked for.
+        choice: DeviceChoice,
     },
     #[error("the adapter {adapter} cannot be used: it lacks {what}")]
     Lacks { adapter: String, what: String },

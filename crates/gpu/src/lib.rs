@@ -5,11 +5,11 @@
 //! bounds stated at [`SurfaceEntry::point_bound`].
 
 mod device;
+mod device_choice;
 mod draw;
 mod error;
 mod evaluate;
-mod exact;
-mod host;
+mod faces;
 mod kernels;
 mod layout;
 mod real;
@@ -17,17 +17,24 @@ mod samples;
 mod shaders;
 mod surfaces;
 
-pub use device::{DeviceChoice, Gpu};
+pub use device::Gpu;
+pub use device_choice::{BACKENDS, DeviceChoice};
 pub use draw::{
-    Background, Camera, ExactRenderer, ExactScene, FrameCounts, Legend, Normals, PIXEL_ERROR, Picture,
-    Placed, Projection, RenderOptions, Renderer, Scenery, SectionPlane, Shape, Style, Trim, Vertex, View,
+    Background, Camera, FaceRenderer, FaceScene, FrameCounts, Legend, Normals, PIXEL_ERROR, Picture, Placed,
+    Projection, RenderOptions, Renderer, Scenery, SectionPlane, Shape, Style, Trim, Vertex, View,
     mesh_scenery, scene_outline,
 };
 pub use error::GpuError;
-pub use evaluate::{Evaluated, Evaluation, Evaluator, OnDevice, Search, Variant, Wanted, evaluate_twin};
-pub use exact::{ExactFace, ExactModel, ExactPart, exact_model};
-pub use host::{HIGHEST_DEGREE, HostPeaks, HostSurface, host_peaks};
+pub use evaluate::{Evaluated, Evaluation, KernelRunner, OnDevice, Search, Variant, Wanted, evaluate_twin};
+pub use faces::{TrimmedFace, TrimmedModel, TrimmedPart, trimmed_model};
 pub use real::Real;
 pub use samples::{Request, Samples, sorted_by_span};
 pub use shaders::{SHADERS, Shader};
 pub use surfaces::{Edit, LocalFrame, SurfaceEntry, SurfaceSet};
+
+/// The unit tests share the device and the models of the tests in `tests/`.
+#[cfg(test)]
+extern crate self as chordal_gpu;
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod test_support;

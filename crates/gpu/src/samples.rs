@@ -1,7 +1,9 @@
 //! Where surfaces are evaluated: grids of any size, lists of (u, v), any number of them in one dispatch.
 
+use crate::error::GpuError;
 use crate::layout::{Head, Row, Span, Tile};
-use crate::{GpuError, Real, SurfaceSet};
+use crate::real::Real;
+use crate::surfaces::SurfaceSet;
 use chordal_nurbs::DVec2;
 
 /// A grid or list on one surface of a set.

@@ -1,6 +1,6 @@
 //! Every WGSL source of the crate, by name, as it is given to the device.
 
-use crate::Real;
+use crate::real::Real;
 
 /// A shader: the files it is put together from, in order.
 #[derive(Clone, Copy, Debug)]
@@ -63,17 +63,17 @@ pub(crate) const FIND_SPANS: Shader = kernel!(
     "find_spans",
     ["common", "find_spans"]
 );
-pub(crate) const FACES: Shader = drawing!("faces");
+pub(crate) const MESH: Shader = drawing!("mesh");
 pub(crate) const LINES: Shader = drawing!("lines");
-pub(crate) const EXACT: Shader = Shader {
-    name: "exact",
+pub(crate) const FACE: Shader = Shader {
+    name: "face",
     files: &[
         include_str!("draw/view.wgsl"),
-        include_str!("exact/trim.wgsl"),
+        include_str!("faces/inside.wgsl"),
         file!("normal"),
         file!("bezier"),
-        include_str!("draw/exact_normal.wgsl"),
-        include_str!("draw/exact.wgsl"),
+        include_str!("draw/face_normal.wgsl"),
+        include_str!("draw/face.wgsl"),
     ],
     bindings: &[],
     generic: false,
@@ -95,9 +95,9 @@ pub const SHADERS: &[Shader] = &[
     DIRECT,
     BERNSTEIN,
     FIND_SPANS,
-    FACES,
+    MESH,
     LINES,
-    EXACT,
+    FACE,
     TRIM_TEXTURE,
 ];
 

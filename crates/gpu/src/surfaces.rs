@@ -9,8 +9,9 @@
 //!
 //! A curve is a surface without degree along v.
 
+use crate::error::GpuError;
 use crate::layout::{Direction, Span};
-use crate::{GpuError, Real};
+use crate::real::Real;
 use chordal_nurbs::{BezierPatch, DVec2, DVec3, NurbsCurve3, NurbsSurface, UvBox};
 use std::ops::{Range, RangeInclusive};
 
@@ -121,6 +122,13 @@ impl<R: Real> SurfaceSet<R> {
     }
     pub fn entries(&self) -> &[SurfaceEntry] {
         &self.entries
+    }
+
+    /// The Bézier points (w x, w y, w z, w) of a surface in local coordinates, cell by cell, u slowest; empty without
+    /// Bézier nets and for an index out of range.
+    pub fn bezier_points(&self, index: usize) -> &[[R; 4]] {
+        let range = self.entries.get(index).map_or(0..0, SurfaceEntry::bezier_range);
+        self.bezier.get(range).unwrap_or_default()
     }
 
     /// Adds a surface and returns its index.
@@ -290,6 +298,11 @@ impl<R: Real> SurfaceSet<R> {
 }
 
 impl SurfaceEntry {
+    /// The ends of the knot spans along u and along v, increasing, one more than spans.
+    pub fn breaks(&self) -> [&[f64]; 2] {
+        [&self.directions[0].breaks, &self.directions[1].breaks]
+    }
+
     /// Its control points in the set.
     pub(crate) fn net_range(&self) -> Range<usize> {
         self.net as usize..(self.net + self.points) as usize

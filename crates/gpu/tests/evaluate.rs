@@ -3,11 +3,11 @@
 mod common;
 
 use chordal_gpu::{
-    DeviceChoice, Edit, Evaluator, Gpu, GpuError, OnDevice, Real, Request, Samples, Search, SurfaceSet,
+    DeviceChoice, Edit, Gpu, GpuError, KernelRunner, OnDevice, Real, Request, Samples, Search, SurfaceSet,
     Variant, Wanted, evaluate_twin, sorted_by_span,
 };
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, NurbsSurface, Range};
-use common::{Random, gpu};
+use common::{Random, gpu, no_gpu};
 
 fn set_of<R: Real>(surfaces: &[NurbsSurface]) -> SurfaceSet<R> {
     let mut set = SurfaceSet::with_bezier();
@@ -28,7 +28,7 @@ fn both<R: Real>(
     mode: (Variant, Wanted, Search),
 ) -> (Vec<R>, Vec<R>) {
     let (variant, wanted, search) = mode;
-    let evaluator = Evaluator::new(gpu(), variant, search).expect("the kernels compile");
+    let evaluator = KernelRunner::new(gpu(), variant, search).expect("the kernels compile");
     let found = evaluator.evaluate(gpu(), set, samples, wanted).expect("the device evaluates");
     (found.values, evaluate_twin(set, samples, variant, wanted, search).expect("the twin fits"))
 }
@@ -48,6 +48,9 @@ fn modes() -> Vec<(Variant, Wanted, Search)> {
 
 #[test]
 fn double_precision_equals_the_twins_to_the_bit() {
+    if no_gpu() {
+        return;
+    }
     if !gpu().has_f64() {
         eprintln!("NOT TESTED: {} has no double precision in shaders", gpu().name());
         return;
@@ -66,6 +69,9 @@ fn double_precision_equals_the_twins_to_the_bit() {
 /// degree, thousands of times their size away from the origin, with short and long spans.
 #[test]
 fn single_precision_keeps_its_bound() {
+    if no_gpu() {
+        return;
+    }
     let mut random = Random(2);
     let surfaces = common::zoo(&mut random);
     let set = set_of::<f32>(&surfaces);
@@ -173,6 +179,9 @@ fn derivatives_are_those_of_nurbs() {
 /// Scattered points, sorted or not, are the points of grids; the two orders agree to the bit.
 #[test]
 fn lists_of_points_agree_with_grids() {
+    if no_gpu() {
+        return;
+    }
     let mut random = Random(4);
     let surface = common::surface(&mut random, [3, 4], [5, 7]);
     let set = set_of::<f32>(std::slice::from_ref(&surface));
@@ -201,6 +210,9 @@ fn lists_of_points_agree_with_grids() {
 /// A circle is a circle: curves go the same way as surfaces.
 #[test]
 fn curves_are_surfaces_without_a_second_degree() {
+    if no_gpu() {
+        return;
+    }
     let frame = Frame::new(DVec3::new(7.0, 8.0, 9.0), DVec3::Z, DVec3::X);
     let circle = Curve::Circle { frame, radius: 2.0 }.to_nurbs(Range::new(0.0, 6.0)).unwrap();
     let wild = NurbsCurve3::new(
@@ -234,13 +246,16 @@ fn curves_are_surfaces_without_a_second_degree() {
 /// After an edit of one surface only its bytes travel, and the next run gives the points of the edited set.
 #[test]
 fn an_edit_uploads_only_what_changed() {
+    if no_gpu() {
+        return;
+    }
     let mut random = Random(5);
     let mut surfaces: Vec<_> = (0..50).map(|_| common::surface(&mut random, [3, 3], [4, 4])).collect();
     for variant in [Variant::Indexed, Variant::Direct, Variant::Bernstein] {
         let mut set = set_of::<f32>(&surfaces);
         let samples = Samples::new(&set, &grids(&set, &mut random)).unwrap();
         let on_device = OnDevice::upload(gpu(), &set).unwrap();
-        let evaluator = Evaluator::new(gpu(), variant, Search::Host).unwrap();
+        let evaluator = KernelRunner::new(gpu(), variant, Search::Host).unwrap();
         let evaluation = evaluator.prepare(gpu(), &on_device, &set, &samples, Wanted::First).unwrap();
         let s = &surfaces[17];
         let moved = s.points().iter().map(|p| *p * 1.5 + DVec3::X * random.next()).collect();
@@ -296,6 +311,9 @@ fn what_does_not_fit_is_an_error() {
 /// More points than one binding holds come in several buffers, and are the same points.
 #[test]
 fn large_grids_are_split_between_bindings() {
+    if no_gpu() {
+        return;
+    }
     let mut random = Random(7);
     let surface = common::surface(&mut random, [1, 2], [2, 2]);
     let mut set = SurfaceSet::<f32>::new();
@@ -303,7 +321,7 @@ fn large_grids_are_split_between_bindings() {
     let width = (gpu().binding_limit() / 12).min(12 << 20) as usize / 1024 + 513;
     let request = Request::even_grid(&set, 0, width, 1024);
     let samples = Samples::new(&set, &[request]).unwrap();
-    let evaluator = Evaluator::new(gpu(), Variant::Direct, Search::Host).unwrap();
+    let evaluator = KernelRunner::new(gpu(), Variant::Direct, Search::Host).unwrap();
     let on_device = OnDevice::upload(gpu(), &set).unwrap();
     let evaluation = evaluator.prepare(gpu(), &on_device, &set, &samples, Wanted::Points).unwrap();
     evaluator.run(gpu(), &evaluation).unwrap();
@@ -326,6 +344,9 @@ fn large_grids_are_split_between_bindings() {
 /// A device that binds little at once: points are split, what cannot be is refused by name, nothing is cut off.
 #[test]
 fn what_exceeds_a_binding_is_split_or_refused() {
+    if no_gpu() {
+        return;
+    }
     let limit = 8 << 20;
     let small = Gpu::open_within(DeviceChoice::Best, limit).expect("a device");
     assert_eq!(small.binding_limit(), limit);
@@ -333,7 +354,7 @@ fn what_exceeds_a_binding_is_split_or_refused() {
     let surface = common::surface(&mut random, [2, 3], [3, 2]);
     let set = set_of::<f32>(std::slice::from_ref(&surface));
     let grid = |n: usize| Samples::new(&set, &[Request::even_grid(&set, 0, n, n)]).unwrap();
-    let evaluator = |variant| Evaluator::<f32>::new(&small, variant, Search::Host).unwrap();
+    let evaluator = |variant| KernelRunner::<f32>::new(&small, variant, Search::Host).unwrap();
     // 12 MB of points.
     let samples = grid(1000);
     let direct = evaluator(Variant::Direct);
@@ -342,7 +363,7 @@ fn what_exceeds_a_binding_is_split_or_refused() {
     assert!(evaluation.buffers().count() > 1);
     direct.run(&small, &evaluation).unwrap();
     let found = evaluation.read(&small).unwrap().values;
-    let whole = Evaluator::<f32>::new(gpu(), Variant::Direct, Search::Host)
+    let whole = KernelRunner::<f32>::new(gpu(), Variant::Direct, Search::Host)
         .unwrap()
         .evaluate(gpu(), &set, &samples, Wanted::Points)
         .unwrap();
@@ -356,7 +377,7 @@ fn what_exceeds_a_binding_is_split_or_refused() {
     let list = Samples::new(&set, &[Request::Points { surface: 0, uvs: uvs.collect() }]).unwrap();
     for variant in Variant::ALL {
         let here = evaluator(variant).evaluate(&small, &set, &list, Wanted::Points).unwrap();
-        let there = Evaluator::<f32>::new(gpu(), variant, Search::Host).unwrap();
+        let there = KernelRunner::<f32>::new(gpu(), variant, Search::Host).unwrap();
         let there = there.evaluate(gpu(), &set, &list, Wanted::Points).unwrap();
         assert!(here.values == there.values, "{variant:?}");
     }
@@ -381,11 +402,14 @@ fn what_exceeds_a_binding_is_split_or_refused() {
 /// A device that goes away is an error at the next call, whatever that is.
 #[test]
 fn a_lost_device_is_an_error() {
+    if no_gpu() {
+        return;
+    }
     let mut random = Random(9);
     let set = set_of::<f32>(&[common::surface(&mut random, [3, 3], [2, 2])]);
     let samples = Samples::new(&set, &grids(&set, &mut random)).unwrap();
     let doomed = Gpu::open(DeviceChoice::Best).expect("a device");
-    let evaluator = Evaluator::<f32>::new(&doomed, Variant::Bernstein, Search::Host).unwrap();
+    let evaluator = KernelRunner::<f32>::new(&doomed, Variant::Bernstein, Search::Host).unwrap();
     let on_device = OnDevice::upload(&doomed, &set).unwrap();
     let evaluation = evaluator.prepare(&doomed, &on_device, &set, &samples, Wanted::Points).unwrap();
     evaluator.run(&doomed, &evaluation).unwrap();
@@ -398,6 +422,6 @@ fn a_lost_device_is_an_error() {
     lost("an edit", on_device.update(&doomed, &set, 0, Edit { points: true, knots: true }).err());
     lost("uploading", OnDevice::upload(&doomed, &set).err());
     lost("all", evaluator.evaluate(&doomed, &set, &samples, Wanted::Points).err());
-    lost("compiling", Evaluator::<f32>::new(&doomed, Variant::Direct, Search::Host).err());
+    lost("compiling", KernelRunner::<f32>::new(&doomed, Variant::Direct, Search::Host).err());
     lost("waiting", doomed.wait().err());
 }

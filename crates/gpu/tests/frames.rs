@@ -2,20 +2,14 @@
 
 mod common;
 
-use chordal::gpu::{
-    DeviceChoice, ExactRenderer, ExactScene, FrameCounts, Gpu, GpuError, Picture, Projection, RenderOptions,
-    Renderer, SectionPlane, Style, Trim, View, exact_model, scene_outline,
+use chordal_gpu::{
+    DeviceChoice, FaceRenderer, FaceScene, FrameCounts, Gpu, GpuError, Picture, Projection, RenderOptions,
+    Renderer, SectionPlane, Style, Trim, View, scene_outline, trimmed_model,
 };
-use chordal::nurbs::{DVec3, NurbsSurface};
-use chordal::{Job, JobOptions, Outcome, Tolerance};
-use common::gpu;
+use chordal_nurbs::{DVec3, NurbsSurface};
+use common::models::{Meshed, meshed};
+use common::{gpu, no_gpu};
 use std::path::Path;
-
-fn meshed(model: &str, percent: f64) -> Outcome {
-    let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent));
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(model);
-    chordal::run(&Job::new(path).with_options(options)).expect("the corpus is meshed")
-}
 
 fn small() -> RenderOptions {
     RenderOptions::default().with_size(320, 240)
@@ -25,24 +19,24 @@ fn small() -> RenderOptions {
 struct Stage<'a> {
     gpu: &'a Gpu,
     renderer: Renderer,
-    faces: ExactRenderer,
-    scene: ExactScene<'a>,
+    faces: FaceRenderer,
+    scene: FaceScene<'a>,
 }
 
 impl<'a> Stage<'a> {
-    fn new(gpu: &'a Gpu, outcome: &'a Outcome) -> Self {
+    fn new(gpu: &'a Gpu, outcome: &'a Meshed) -> Self {
         let (scene, model) = (&outcome.scene, &outcome.model);
         Self {
             gpu,
             renderer: Renderer::new(gpu).expect("shaders compile"),
-            faces: ExactRenderer::new(gpu).expect("shaders compile"),
-            scene: ExactScene::new(gpu, exact_model(scene, model), (scene, model), Style::Shaded)
+            faces: FaceRenderer::new(gpu).expect("shaders compile"),
+            scene: FaceScene::new(gpu, trimmed_model(scene, model), (scene, model), Style::Shaded)
                 .expect("it fits"),
         }
     }
 
     fn frame(&mut self, options: &RenderOptions) -> (Picture, FrameCounts) {
-        self.renderer.render_exact(self.gpu, &self.faces, &mut self.scene, options).expect("a picture")
+        self.renderer.render_faces(self.gpu, &self.faces, &mut self.scene, options).expect("a picture")
     }
 
     fn faces_of(&self, part: usize) -> usize {
@@ -53,6 +47,9 @@ impl<'a> Stage<'a> {
 /// The same view again and a little nearer needs no new samples; nearer by a lot needs those of bent faces alone.
 #[test]
 fn samples_are_used_again() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("iv/airplane_in_a_box.iv", 0.1);
     for trim in [Trim::Exact, Trim::Texture] {
         let mut stage = Stage::new(gpu(), &outcome);
@@ -81,6 +78,9 @@ fn samples_are_used_again() {
 /// A flight of a hundred frames towards a model: pictures are those of a scene made for each of them, and little is on the device.
 #[test]
 fn a_flight_shows_what_single_pictures_show() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("blade.step", 0.1);
     let mut stage = Stage::new(gpu(), &outcome);
     let mut evaluated = 0;
@@ -105,6 +105,9 @@ fn a_flight_shows_what_single_pictures_show() {
 /// Leaving out what the picture cannot show leaves the picture as it is: closed and open bodies, near and far, cut and whole.
 #[test]
 fn rejection_is_not_seen() {
+    if no_gpu() {
+        return;
+    }
     let mut rejected = [0, 0];
     let models = [
         "bracket.step",
@@ -170,6 +173,9 @@ fn moved(surface: &NurbsSurface, phase: f64) -> NurbsSurface {
 /// and the pictures are those of a scene that had them from the start.
 #[test]
 fn moving_surfaces_send_and_evaluate_themselves_alone() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("iv/duck.iv", 0.1);
     let options = small().with_lines(false);
     for trim in [Trim::Exact, Trim::Texture] {
@@ -202,11 +208,14 @@ fn moving_surfaces_send_and_evaluate_themselves_alone() {
 /// Knots that move move the samples with them: the picture is that of a scene that had them from the start.
 #[test]
 fn moved_knots_move_the_samples() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("iv/duck.iv", 0.1);
     let options = small().with_lines(false);
     let mut stage = Stage::new(gpu(), &outcome);
     let (still, _) = stage.frame(&options);
-    let face = |f: &chordal::gpu::ExactFace| f.surface.breaks_u().len() > 2;
+    let face = |f: &chordal_gpu::TrimmedFace| f.surface.breaks_u().len() > 2;
     let index = stage.scene.exact().parts[0].faces.iter().position(face).expect("inner knots");
     let s = stage.scene.exact().parts[0].faces[index].surface.clone();
     let domain = s.domain();
@@ -229,6 +238,9 @@ fn moved_knots_move_the_samples() {
 /// Far copies of a part are sampled by themselves, more coarsely.
 #[test]
 fn far_copies_take_fewer_points() {
+    if no_gpu() {
+        return;
+    }
     let mut outcome = meshed("iv/duck.iv", 0.3);
     let outline = scene_outline(&outcome.scene);
     let (low, high) = outline.iter().fold((outline[0], outline[0]), |(l, h), p| (l.min(*p), h.max(*p)));
@@ -257,6 +269,9 @@ fn far_copies_take_fewer_points() {
 /// A device that binds little gets the model in several pieces and shows the same picture; where one face does not fit it says so.
 #[test]
 fn small_bindings_split_the_scene() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("blade.step", 0.1);
     let options = small();
     let (whole, _) = Stage::new(gpu(), &outcome).frame(&options);
@@ -267,18 +282,22 @@ fn small_bindings_split_the_scene() {
     }
     let tiny = Gpu::open_within(DeviceChoice::Best, 512).expect("a device");
     let (scene, model) = (&outcome.scene, &outcome.model);
-    let refused =
-        ExactScene::new(&tiny, exact_model(scene, model), (scene, model), Style::Shaded).and_then(|mut s| {
+    let refused = FaceScene::new(&tiny, trimmed_model(scene, model), (scene, model), Style::Shaded).and_then(
+        |mut s| {
             Renderer::new(&tiny)?
-                .render_exact(&tiny, &ExactRenderer::new(&tiny)?, &mut s, &options)
+                .render_faces(&tiny, &FaceRenderer::new(&tiny)?, &mut s, &options)
                 .map(|_| ())
-        });
+        },
+    );
     assert!(matches!(refused, Err(GpuError::TooLarge { .. })), "{refused:?}");
 }
 
 /// Without its device no frame, no edit and no new scene: an error that says so.
 #[test]
 fn a_lost_device_is_said() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("iv/duck.iv", 0.5);
     let doomed = Gpu::open(DeviceChoice::Best).expect("a device");
     let mut stage = Stage::new(&doomed, &outcome);
@@ -289,11 +308,11 @@ fn a_lost_device_is_said() {
     };
     let surface = stage.scene.exact().parts[0].faces[0].surface.clone();
     let Stage { renderer, faces, scene, .. } = &mut stage;
-    lost("drawing", renderer.render_exact(&doomed, faces, scene, &small()).err());
-    lost("another size", renderer.render_exact(&doomed, faces, scene, &small().with_size(64, 64)).err());
+    lost("drawing", renderer.render_faces(&doomed, faces, scene, &small()).err());
+    lost("another size", renderer.render_faces(&doomed, faces, scene, &small().with_size(64, 64)).err());
     lost("an edit", scene.set_surface(&doomed, 0, 0, &surface).err());
     let parts = (&outcome.scene, &outcome.model);
-    lost("a scene", ExactScene::new(&doomed, exact_model(parts.0, parts.1), parts, Style::Shaded).err());
+    lost("a scene", FaceScene::new(&doomed, trimmed_model(parts.0, parts.1), parts, Style::Shaded).err());
     lost("shaders", Renderer::new(&doomed).err());
-    lost("kernels", ExactRenderer::new(&doomed).err());
+    lost("kernels", FaceRenderer::new(&doomed).err());
 }

@@ -4,30 +4,20 @@
 
 mod common;
 
-use chordal::gpu::{
-    Background, ExactRenderer, ExactScene, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style,
-    Trim, View, exact_model, mesh_scenery,
+use chordal_gpu::{
+    Background, FaceRenderer, FaceScene, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style,
+    Trim, View, mesh_scenery, trimmed_model,
 };
-use chordal::nurbs::DVec3;
-use chordal::{Job, JobOptions, Outcome, Tolerance};
-use common::gpu;
-use std::path::{Path, PathBuf};
+use chordal_nurbs::DVec3;
+use common::models::{Meshed, meshed};
+use common::{gpu, no_gpu};
+use std::path::Path;
 
 /// Largest difference of a channel that is none, and the share of pixels that may differ by more.
 const THRESHOLD: u8 = 24;
 const SHARE: f64 = 0.004;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn meshed(model: &str, percent: f64) -> Outcome {
-    let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent));
-    chordal::run(&Job::new(root().join("corpus").join(model)).with_options(options))
-        .expect("the corpus is meshed")
-}
-
-fn drawn(outcome: &Outcome, options: &RenderOptions) -> Picture {
+fn drawn(outcome: &Meshed, options: &RenderOptions) -> Picture {
     let (scenery, _) = mesh_scenery(&outcome.scene, &outcome.model, options.style);
     Renderer::new(gpu())
         .expect("shaders compile")
@@ -35,9 +25,9 @@ fn drawn(outcome: &Outcome, options: &RenderOptions) -> Picture {
         .expect("a picture")
 }
 
-fn on_device(outcome: &Outcome) -> ExactScene<'_> {
+fn on_device(outcome: &Meshed) -> FaceScene<'_> {
     let (scene, model) = (&outcome.scene, &outcome.model);
-    ExactScene::new(gpu(), exact_model(scene, model), (scene, model), Style::Shaded).expect("it fits")
+    FaceScene::new(gpu(), trimmed_model(scene, model), (scene, model), Style::Shaded).expect("it fits")
 }
 
 fn small() -> RenderOptions {
@@ -65,6 +55,9 @@ fn hold_against(name: &str, picture: &Picture) {
 
 #[test]
 fn corpus_models_look_as_they_did() {
+    if no_gpu() {
+        return;
+    }
     let section = Some(SectionPlane { normal: DVec3::Y, offset: 0.0 });
     let cases = [
         ("bracket.step", 0.05, "bracket", small()),
@@ -93,6 +86,9 @@ fn corpus_models_look_as_they_did() {
 /// The models by which trimmed drawing is shown, by curves and by textures; close up a texture keeps to its own resolution.
 #[test]
 fn trimmed_surfaces_look_as_they_did() {
+    if no_gpu() {
+        return;
+    }
     let star = View::At { eye: DVec3::new(6e4, -5e4, 4e4), target: DVec3::new(5e3, 1e3, 0.0) };
     let cases = [
         ("iv/duck.iv", Trim::Exact, "duck", small()),
@@ -114,11 +110,11 @@ fn trimmed_surfaces_look_as_they_did() {
         ("nested_loops.step", Trim::Texture, "nested_loops_texture", small()),
         ("fillet_torus.step", Trim::Exact, "neighbours_close", small().with_zoom(5.0).with_lines(false)),
     ];
-    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    let (faces, renderer) = (FaceRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
     for (model, trim, name, options) in cases {
         let outcome = meshed(model, 0.05);
         let options = options.with_trim(trim);
-        let (picture, _) = renderer.render_exact(gpu(), &faces, &mut on_device(&outcome), &options).unwrap();
+        let (picture, _) = renderer.render_faces(gpu(), &faces, &mut on_device(&outcome), &options).unwrap();
         hold_against(name, &picture);
     }
 }
@@ -126,12 +122,15 @@ fn trimmed_surfaces_look_as_they_did() {
 /// Styles that show the mesh: more lines than the model's own edges, and no distance above the proven error.
 #[test]
 fn styles_of_the_mesh_show_it() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("bracket.step", 0.3);
     let dark = |p: &Picture| p.pixels.iter().filter(|p| p[1] < 90).count();
     let shaded = drawn(&outcome, &small());
     assert!(dark(&drawn(&outcome, &small().with_style(Style::Wireframe))) > dark(&shaded));
     let (_, legend) = mesh_scenery(&outcome.scene, &outcome.model, Style::Error);
-    let (high, proven) = (legend.unwrap().high, outcome.report.proven_error.unwrap());
+    let (high, proven) = (legend.unwrap().high, outcome.proven_error);
     assert!(high > 0.1 * proven && high <= proven, "{high} {proven}");
     assert!(drawn(&outcome, &small().with_style(Style::Error)).difference(&shaded, THRESHOLD) > 0.1);
 }
@@ -139,6 +138,9 @@ fn styles_of_the_mesh_show_it() {
 /// The model far from the origin is drawn as sharply as the same one near it would be: single precision holds offsets only.
 #[test]
 fn a_close_look_far_from_the_origin_keeps_its_pixels() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("far_from_origin.step", 0.05);
     let near = drawn(&outcome, &small());
     let mut moved = outcome;
@@ -151,13 +153,16 @@ fn a_close_look_far_from_the_origin_keeps_its_pixels() {
 /// A mirrored placement is lit like the thing itself seen in a mirror.
 #[test]
 fn mirrored_placements_are_lit_from_the_same_side() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("gear.step", 0.1);
     let top = small().with_view("top".parse::<View>().unwrap());
     let plain = drawn(&outcome, &top);
     let mut mirrored = outcome;
     for &root in &mirrored.scene.roots.clone() {
         let transform = &mut mirrored.scene.nodes[root].transform;
-        *transform = chordal::nurbs::DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)) * *transform;
+        *transform = chordal_nurbs::DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)) * *transform;
     }
     // A flat gear mirrored in its own plane shows the same face upwards.
     assert!(plain.difference(&drawn(&mirrored, &top), 8) < 0.01);
@@ -166,6 +171,9 @@ fn mirrored_placements_are_lit_from_the_same_side() {
 /// A transparent background leaves the borders' colours free of it.
 #[test]
 fn transparent_pictures_have_no_dark_borders() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("bracket.step", 0.1);
     let clear = drawn(&outcome, &small().with_background(Background::Transparent));
     let light = drawn(&outcome, &small());
@@ -178,16 +186,19 @@ fn transparent_pictures_have_no_dark_borders() {
 /// Of a box that is seen through, front and back cover what the opacity of both says, whatever the order of drawing.
 #[test]
 fn what_is_not_opaque_is_seen_through() {
-    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    if no_gpu() {
+        return;
+    }
+    let (faces, renderer) = (FaceRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
     let options = small().with_lines(false).with_background(Background::Transparent);
     for opacity in [0.25, 0.5, 0.7] {
         let mut outcome = meshed("styles.step", 0.1);
         for part in &mut outcome.scene.parts {
             part.face_colors.fill(Some([0.8, 0.2, 0.1, opacity]));
         }
-        let (exact, _) = renderer.render_exact(gpu(), &faces, &mut on_device(&outcome), &options).unwrap();
+        let (exact, _) = renderer.render_faces(gpu(), &faces, &mut on_device(&outcome), &options).unwrap();
         let texture = options.with_trim(Trim::Texture);
-        let (textured, _) = renderer.render_exact(gpu(), &faces, &mut on_device(&outcome), &texture).unwrap();
+        let (textured, _) = renderer.render_faces(gpu(), &faces, &mut on_device(&outcome), &texture).unwrap();
         for picture in [exact, textured, drawn(&outcome, &options)] {
             // Well within the picture of the box, 8 × 8 of the patterns.
             let (w, h) = (picture.width as usize, picture.height as usize);
@@ -202,15 +213,18 @@ fn what_is_not_opaque_is_seen_through() {
 /// Exact surfaces look like their mesh at a tolerance that no pixel shows, near and far, the trims close up too.
 #[test]
 fn exact_surfaces_look_like_a_fine_mesh() {
+    if no_gpu() {
+        return;
+    }
     let models = ["bracket.step", "elliptic.step", "cone_apex.step", "sphere_holes.step", "torus_hole.step"];
-    let faces = ExactRenderer::new(gpu()).unwrap();
+    let faces = FaceRenderer::new(gpu()).unwrap();
     let renderer = Renderer::new(gpu()).unwrap();
     for model in models {
         let outcome = meshed(model, 0.01);
         let mut exact = on_device(&outcome);
         for zoom in [1.0, 5.0] {
             let options = small().with_zoom(zoom);
-            let (picture, counts) = renderer.render_exact(gpu(), &faces, &mut exact, &options).unwrap();
+            let (picture, counts) = renderer.render_faces(gpu(), &faces, &mut exact, &options).unwrap();
             assert!(counts.faces > 0);
             let share = picture.difference(&drawn(&outcome, &options), THRESHOLD);
             assert!(share < 0.003, "{model} at zoom {zoom}: {:.2} % of the pixels differ", 100.0 * share);
@@ -222,6 +236,9 @@ fn exact_surfaces_look_like_a_fine_mesh() {
 /// other, without exception: every pixel that one shows is next to one that the other shows.
 #[test]
 fn silhouettes_are_those_of_a_mesh_at_1e_5() {
+    if no_gpu() {
+        return;
+    }
     let models = [
         "bracket.step",
         "elliptic.step",
@@ -234,7 +251,7 @@ fn silhouettes_are_those_of_a_mesh_at_1e_5() {
         "iv/duck.iv",
         "iv/concave_trim.iv",
     ];
-    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    let (faces, renderer) = (FaceRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
     for model in models {
         let outcome = meshed(model, 0.001);
         let mut exact = on_device(&outcome);
@@ -244,7 +261,7 @@ fn silhouettes_are_those_of_a_mesh_at_1e_5() {
                 .with_zoom(zoom)
                 .with_lines(false)
                 .with_background(Background::Transparent);
-            let (nurbs, _) = renderer.render_exact(gpu(), &faces, &mut exact, &options).unwrap();
+            let (nurbs, _) = renderer.render_faces(gpu(), &faces, &mut exact, &options).unwrap();
             let mesh = drawn(&outcome, &options);
             for (name, a, b) in [("nurbs", &nurbs, &mesh), ("mesh", &mesh, &nurbs)] {
                 let alone = beyond_a_pixel(a, b);
@@ -270,7 +287,10 @@ fn beyond_a_pixel(a: &Picture, b: &Picture) -> usize {
 /// Both ways of trimming look alike where texels are finer than pixels, and like a fine mesh: deep notches, holes with islands, windows.
 #[test]
 fn both_trims_look_alike() {
-    let (faces, renderer) = (ExactRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
+    if no_gpu() {
+        return;
+    }
+    let (faces, renderer) = (FaceRenderer::new(gpu()).unwrap(), Renderer::new(gpu()).unwrap());
     for model in [
         "iv/duck.iv",
         "iv/concave_trim.iv",
@@ -283,7 +303,7 @@ fn both_trims_look_alike() {
         for zoom in [1.0, 4.0] {
             let options = small().with_zoom(zoom);
             let mut of =
-                |trim| renderer.render_exact(gpu(), &faces, &mut exact, &options.with_trim(trim)).unwrap().0;
+                |trim| renderer.render_faces(gpu(), &faces, &mut exact, &options.with_trim(trim)).unwrap().0;
             let (curves, texture) = (of(Trim::Exact), of(Trim::Texture));
             let share = curves.difference(&texture, THRESHOLD);
             assert!(share < 0.001, "{model} at zoom {zoom}: {:.2} % of the pixels differ", 100.0 * share);
@@ -297,7 +317,10 @@ fn both_trims_look_alike() {
 /// that the loops were taken from.
 #[test]
 fn neighbours_show_no_crack() {
-    let faces = ExactRenderer::new(gpu()).unwrap();
+    if no_gpu() {
+        return;
+    }
+    let faces = FaceRenderer::new(gpu()).unwrap();
     let renderer = Renderer::new(gpu()).unwrap();
     let magenta = "#ff00ff".parse().unwrap();
     for model in ["bracket.step", "fillets.step", "blade.step", "fillet_torus.step"] {
@@ -305,7 +328,7 @@ fn neighbours_show_no_crack() {
         let mut exact = on_device(&outcome);
         for zoom in [1.0, 3.3, 11.0] {
             let options = small().with_zoom(zoom).with_lines(false).with_background(magenta);
-            let (picture, _) = renderer.render_exact(gpu(), &faces, &mut exact, &options).unwrap();
+            let (picture, _) = renderer.render_faces(gpu(), &faces, &mut exact, &options).unwrap();
             let solid = drawn(&meshed(model, 0.005), &options);
             let (w, h) = (i64::from(picture.width), i64::from(picture.height));
             let is_background = |p: [u8; 4]| p[0] > p[1].saturating_add(60);
@@ -327,6 +350,9 @@ fn neighbours_show_no_crack() {
 
 #[test]
 fn a_picture_beyond_the_device_is_refused() {
+    if no_gpu() {
+        return;
+    }
     let outcome = meshed("gear.step", 0.5);
     let (scenery, _) = mesh_scenery(&outcome.scene, &outcome.model, Style::Shaded);
     let renderer = Renderer::new(gpu()).unwrap();

@@ -1,7 +1,7 @@
 //! Bad mesh files: a sentence, never a panic, never memory by what a header claims.
 #![allow(clippy::unwrap_used)] // A failed test says where.
 
-use chordal_mesh::{ImportError, import_bytes, import_mesh};
+use chordal_mesh::{ImportError, ImportFault, ImportPlace, import_bytes, import_mesh};
 use std::path::Path;
 
 /// The sentence that a file is refused with.
@@ -19,7 +19,7 @@ fn counts_beyond_the_file_are_refused() {
     stl.extend_from_slice(&[0; 49]);
     assert_eq!(
         refusal(&stl, "stl"),
-        "this is no valid STL file: its header promises 4294967295 triangles but it holds 0"
+        "not a valid STL file: the header states 4294967295 triangles, the file holds 0"
     );
     for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
         for elements in [
@@ -29,12 +29,12 @@ fn counts_beyond_the_file_are_refused() {
         ] {
             let text = format!("ply\nformat {format} 1.0\n{elements}end_header\n1 2 3 4 5 6 7 8\n");
             let sentence = refusal(text.as_bytes(), "ply");
-            assert!(sentence.contains("but it ends before"), "{sentence}");
+            assert!(sentence.contains("more than the file can hold"), "{sentence}");
         }
     }
     let list = b"ply\nformat ascii 1.0\nelement face 1\nproperty list int int vertex_indices\nend_header\n4000000000 1\n";
     assert!(
-        refusal(list, "ply").contains("refers to vertex") || refusal(list, "ply").contains("ends inside")
+        refusal(list, "ply").contains("refers to vertex 1 of 0") || refusal(list, "ply").contains("ends inside")
     );
 }
 
@@ -71,7 +71,7 @@ fn glb_accessors_beyond_the_file_are_refused() {
     );
     for (count, offset) in [(4, 0), (3, 4), (u64::MAX, 0), (3, u64::MAX), (1 << 62, 0)] {
         let sentence = refusal(&glb(&json(count, offset), &binary), "glb");
-        assert!(sentence.contains("reaches beyond the file"), "{sentence}");
+        assert!(sentence.contains("reaches beyond the end of its buffer"), "{sentence}");
     }
 }
 
@@ -94,8 +94,8 @@ fn buffers_of_text_files_must_be_embedded_and_complete() {
     let soup = import_bytes(&gltf(&format!("data:application/octet-stream;base64,{data}")), "gltf").unwrap();
     assert_eq!((soup.triangles.len(), soup.positions[2].to_array()), (1, [0.0, 1.0, 0.0]));
     assert!(refusal(&gltf("part.bin"), "gltf").contains("another file"));
-    assert!(refusal(&gltf("data:;base64,***"), "gltf").contains("buffer is broken"));
-    assert!(refusal(&gltf("data:;base64,AAAA"), "gltf").contains("reaches beyond the file"));
+    assert!(refusal(&gltf("data:;base64,***"), "gltf").contains("not valid base64"));
+    assert!(refusal(&gltf("data:;base64,AAAA"), "gltf").contains("reaches beyond the end of its buffer"));
 }
 
 #[test]
@@ -117,15 +117,42 @@ fn what_is_no_mesh_is_named() {
     assert!(matches!(import_mesh(Path::new("nowhere")), Err(ImportError::UnknownFormat(_))));
 }
 
+/// The place and the fault that a file is refused with.
+fn fault(bytes: &[u8], extension: &str) -> (Option<ImportPlace>, ImportFault) {
+    match import_bytes(bytes, extension) {
+        Err(ImportError::Invalid { place, fault, .. }) => (place, fault),
+        other => panic!("{extension}: {other:?}"),
+    }
+}
+
 #[test]
-fn numbers_that_are_none_are_refused() {
-    assert!(refusal(b"v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "obj").contains("NaN"));
-    assert!(refusal(b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "obj").contains("statement 3"));
-    assert!(refusal(b"v 0 0 0\nv 1 0\n", "obj").contains("statement 2"));
-    assert!(refusal(b"v 0 0 0\nv 1 0 0\nf 1 2\n", "obj").contains("fewer than three"));
+fn faults_have_their_place_and_their_values() {
+    let line = |n| Some(ImportPlace::Line(n));
+    let (place, found) = fault(b"v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "obj");
+    assert!(place == line(4) && matches!(found, ImportFault::NotFinite { point } if point[1].is_nan()));
+    let unknown = ImportFault::UnknownVertex { vertex: "3".to_owned(), vertices: 2 };
+    assert_eq!(fault(b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "obj"), (line(3), unknown.clone()));
+    assert_eq!(fault(b"v 0 0 0\nv 1 0 \\\n0\nf 1 2 3\n", "obj"), (line(4), unknown));
+    assert_eq!(fault(b"v 0 0 0\nv 1 0\n", "obj"), (line(2), ImportFault::Vertex));
+    assert_eq!(fault(b"v 0 0 0\nv 1 0 0\nf 1 2\n", "obj"), (line(3), ImportFault::Corners { corners: 2 }));
     let open = b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
-    assert!(refusal(open, "stl").contains("ends inside a loop"));
-    assert!(refusal(b"solid a\nvertex 0 0 0\nendloop\n", "stl").contains("has 1 corners"));
+    assert_eq!(fault(open, "stl"), (None, ImportFault::EndsInside { what: "loop" }));
+    let one = fault(b"solid a\nvertex 0 0 0\nendloop\n", "stl");
+    assert_eq!(one, (line(3), ImportFault::Corners { corners: 1 }));
+    let ply = b"ply\nformat ascii 1.0\nelement vertex many\n";
+    let text = "element vertex many".to_owned();
+    assert_eq!(fault(ply, "ply"), (line(3), ImportFault::HeaderLine { text }));
+    // The second coordinate of the second corner of the second triangle is not a number.
+    let mut stl = vec![b' '; 80];
+    stl.extend_from_slice(&2_u32.to_le_bytes());
+    stl.extend_from_slice(&[0; 100]);
+    let at = 84 + 50 + 24 + 4;
+    stl[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let (place, found) = fault(&stl, "stl");
+    assert_eq!(place, Some(ImportPlace::Byte(84 + 50 + 24)));
+    assert!(matches!(found, ImportFault::NotFinite { .. }));
+    let sentence = refusal(b"v 0 0 0\nv 1 0\n", "obj");
+    assert_eq!(sentence, "not a valid OBJ file: line 2: a vertex needs three numbers");
 }
 
 #[test]

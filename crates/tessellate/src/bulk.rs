@@ -1,28 +1,20 @@
 //! Many points of one surface at once, by whoever can: the seam to devices other than this thread.
 //!
-//! Where a strategy knows its points before it connects them, it says so ([`Foreseen::ask`]), and an [`Evaluator`] may find
+//! Where a strategy knows its points before it connects them, it says so ([`Foreseen::ask`]), and an [`BulkEvaluator`] may find
 //! positions and derivatives of all of them together. What comes back places vertices and sizes triangles; what is proven
 //! of them is found here, in double precision, as ever.
 
 use crate::surface::FaceSurface;
-use chordal_nurbs::{DVec2, NurbsSurface, Surface, SurfaceJet};
+use chordal_nurbs::{BulkEvaluator, DVec2, Surface, SurfaceJet};
 use rustc_hash::FxHashMap;
-use std::fmt::Debug;
 use std::sync::Arc;
-
-/// Evaluates many points of one spline surface at once, to double precision.
-pub trait Evaluator: Debug + Send + Sync {
-    /// Point, first and second derivatives at each of these parameters, which lie in the surface's domain. `None`: not worth it, or
-    /// impossible just now; the caller evaluates them itself. What is returned must not depend on other calls.
-    fn jets(&self, surface: &NurbsSurface, at: &[DVec2]) -> Option<Vec<SurfaceJet>>;
-}
 
 /// An evaluator, or none.
 #[derive(Clone, Debug, Default)]
-pub struct Bulk(Option<Arc<dyn Evaluator>>);
+pub struct Bulk(Option<Arc<dyn BulkEvaluator>>);
 
 impl Bulk {
-    pub fn new(evaluator: Arc<dyn Evaluator>) -> Self {
+    pub fn new(evaluator: Arc<dyn BulkEvaluator>) -> Self {
         Self(Some(evaluator))
     }
 }

@@ -52,7 +52,7 @@ mod trace;
 mod triangulate;
 mod unroll;
 
-pub use bulk::{Bulk, Evaluator};
+pub use bulk::Bulk;
 pub use clock::Stopwatch;
 pub use limits::Bound;
 pub use options::{Cancel, Options};

@@ -67,7 +67,7 @@ fn archives_that_explode_are_refused() {
     }
     model += "</resources><build><item objectid=\"40\"/></build></model>";
     let error = import_bytes(&archive_of(&model), "3mf").unwrap_err().to_string();
-    assert!(error.contains("places over"), "{error}");
+    assert!(error.contains("place over"), "{error}");
     let circle = model.replace("objectid=\"0\"", "objectid=\"40\"");
     let error = import_bytes(&archive_of(&circle), "3mf").unwrap_err().to_string();
     assert!(error.contains("contains itself"), "{error}");

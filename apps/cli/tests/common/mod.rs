@@ -3,6 +3,7 @@
 
 use std::ffi::OsStr;
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread::sleep;
@@ -22,6 +23,21 @@ pub struct Ran {
 }
 
 impl Ran {
+    /// True if the run found no GPU: the test is skipped then, and a line on standard error says so.
+    /// `CHORDAL_REQUIRE_GPU=1` makes the test fail instead.
+    pub fn lacks_gpu(&self) -> bool {
+        if self.code != 2 || !self.stderr.contains("device was found") {
+            return false;
+        }
+        let required = std::env::var_os("CHORDAL_REQUIRE_GPU").is_some_and(|v| v != "0");
+        assert!(!required, "CHORDAL_REQUIRE_GPU is set, but {}", self.stderr);
+        let thread = std::thread::current();
+        // Not by a macro: the test harness hides what a passing test prints by macros.
+        let name = thread.name().unwrap_or("a test");
+        let _ = writeln!(std::io::stderr(), "{name}: skipped: {}", self.stderr.trim_end());
+        true
+    }
+
     /// The exit code must be one of `codes`.
     #[track_caller]
     pub fn exits(self, codes: &[i32]) -> Self {

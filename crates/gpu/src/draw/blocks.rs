@@ -1,11 +1,12 @@
-//! Grids cut into blocks of cells, so that all faces of a generation are drawn by a few calls however many they are.
+//! Grids cut into blocks of cells, so that all faces of a batch are drawn by a few calls however many they are.
 //!
 //! A block is an instance: its record names the face, the placement and its first cell. All blocks of one shape share their
 //! indices, so that a corner within a block is calculated once. What of a block lies beyond its grid collapses to nothing.
 
 use super::pipelines::bind_resources;
+use crate::device::Gpu;
+use crate::error::GpuError;
 use crate::evaluate::storage;
-use crate::{Gpu, GpuError};
 use bytemuck::{Pod, Zeroable};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -79,7 +80,7 @@ pub(crate) struct Cells {
     pub border: u32,
 }
 
-/// The blocks of what is drawn of one generation.
+/// The blocks of what is drawn of one batch.
 #[derive(Debug)]
 pub(crate) struct Blocks {
     /// For the pipelines of faces and of borders.
@@ -88,7 +89,7 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    /// Of faces (their numbers in the generation and the placements each is seen in), for the pipelines of faces and borders.
+    /// Of faces (their numbers in the batch and the placements each is seen in), for the pipelines of faces and borders.
     pub fn new(
         gpu: &Gpu,
         pipelines: [&RenderPipeline; 2],

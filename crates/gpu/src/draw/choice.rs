@@ -1,6 +1,6 @@
 //! How finely one face is sampled for a view, and when a choice made before still serves.
 
-use crate::exact::{Cubic, ExactFace, errors_served, steps};
+use crate::faces::{Cubic, TrimmedFace, errors_served, steps};
 use chordal_nurbs::DVec2;
 
 /// The largest distance between what is drawn and the exact surface, pixels.
@@ -33,7 +33,7 @@ pub(crate) struct Choice {
 
 impl Choice {
     /// What an error in the part's units asks for.
-    pub fn of(face: &ExactFace, error: f64) -> Self {
+    pub fn of(face: &TrimmedFace, error: f64) -> Self {
         // A texel is half as large as the pixel that shows it: the error is half a pixel.
         let texels = face.stretch.map(|s| (s / error * (0.5 / PIXEL_ERROR)).clamp(TEXELS[0], TEXELS[1]));
         let joined = face.shortest_piece <= JOINED * error / PIXEL_ERROR;
@@ -47,7 +47,7 @@ impl Choice {
     }
 
     /// The same for samples that have to serve while the view moves.
-    pub fn with_reserve(self, face: &ExactFace) -> Self {
+    pub fn with_reserve(self, face: &TrimmedFace) -> Self {
         // An error goes with the square of a step.
         Self::of(face, self.error / (RESERVE * RESERVE))
     }
@@ -65,7 +65,7 @@ impl Choice {
 
 impl Choice {
     /// The smallest and the largest error that samples chosen so serve, in the part's units; nothing between the two is in doubt.
-    pub fn errors_served(&self, face: &ExactFace, textured: bool) -> [f64; 2] {
+    pub fn errors_served(&self, face: &TrimmedFace, textured: bool) -> [f64; 2] {
         let [mut low, mut high] = errors_served(face, self.steps);
         let mut narrow = |least: f64, most: f64| (low, high) = (low.max(least), high.min(most));
         if self.border < BORDER_STEPS {
@@ -96,7 +96,7 @@ fn border_steps(bend: f64, error: f64) -> f64 {
     (bend / (2.0 * error)).sqrt().clamp(1.0, BORDER_STEPS)
 }
 
-impl ExactFace {
+impl TrimmedFace {
     /// The pieces of its border: its loops, or its square.
     fn border_pieces(&self) -> Vec<Cubic> {
         let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
@@ -187,7 +187,8 @@ mod tests {
     fn short_pieces_of_borders_are_joined() {
         let net = (0..4).map(|k| DVec3::new(f64::from(k / 2), f64::from(k % 2), 0.0)).collect();
         let knots = vec![0.0, 0.0, 1.0, 1.0];
-        let mut face = ExactFace::whole(NurbsSurface::new([1, 1], knots.clone(), knots, net, None).unwrap());
+        let mut face =
+            TrimmedFace::whole(NurbsSurface::new([1, 1], knots.clone(), knots, net, None).unwrap());
         let at = |k: u32| {
             DVec2::splat(0.5) + 0.4 * DVec2::from_angle(std::f64::consts::TAU * f64::from(k % 500) / 500.0)
         };
@@ -210,7 +211,7 @@ mod tests {
         let points = (0..16).map(|k| net(k / 4, k % 4)).collect();
         let knots = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
         let surface = NurbsSurface::new([3, 3], knots.clone(), knots, points, None).unwrap();
-        let face = ExactFace::whole(surface);
+        let face = TrimmedFace::whole(surface);
         let mut open = 0;
         for step in 0..60 {
             let error = 0.3 * 0.83_f64.powi(step);

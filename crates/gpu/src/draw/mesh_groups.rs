@@ -1,9 +1,10 @@
 //! Triangles and lines of shapes on the device, as many shapes to a buffer as the limits allow.
 
 use super::pipelines::bind_group;
-use super::{Shape, Vertex};
+use super::shapes::{Shape, Vertex};
+use crate::device::Gpu;
+use crate::error::GpuError;
 use crate::evaluate::storage;
-use crate::{Gpu, GpuError};
 use bytemuck::Pod;
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages, RenderPass, RenderPipeline};

@@ -1,8 +1,11 @@
 //! From a meshed scene to what is drawn.
 
-use super::measures::{distance, diverging, mean_curvature, sequential};
-use super::{Placed, Scenery, Shape, Style, Vertex, camera, srgb};
-use crate::ExactModel;
+use super::camera;
+use super::false_color::{distance, diverging, mean_curvature, sequential};
+use super::options::Style;
+use super::shapes::{Placed, Scenery, Shape, Vertex};
+use super::srgb::srgb;
+use crate::faces::TrimmedModel;
 use chordal_brep::{FaceGeometry, Model, Part};
 use chordal_mesh::{FaceMesh, Rgba, Scene, ScenePart};
 use chordal_nurbs::Surface;
@@ -32,7 +35,7 @@ pub(crate) fn scenery_of(
     scene: &Scene,
     model: &Model,
     style: Style,
-    exact: Option<&ExactModel>,
+    exact: Option<&TrimmedModel>,
 ) -> (Scenery, Option<Legend>) {
     let mut placements = scene.placements();
     placements.sort_by_key(|p| p.part);

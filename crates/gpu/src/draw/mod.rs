@@ -1,22 +1,27 @@
 //! Drawing: scenes of meshes or of exact surfaces, without a window, into a picture.
+//!
+//! Files `mesh_*` draw meshes, files `face_*` draw exact faces; `renderer.rs` has what both share.
 
 mod blocks;
-mod calm;
 mod camera;
 mod choice;
-mod exact;
+mod device_store;
+mod face_batch;
 #[cfg(test)]
-mod exact_normal;
-mod exact_scene;
-mod generation;
-mod measures;
+mod face_normal;
+mod face_renderer;
+mod face_scene;
+mod false_color;
+mod frame_counts;
 mod mesh_groups;
 mod mesh_shapes;
+mod options;
 mod picture;
 mod pipelines;
 mod renderer;
-mod residents;
 mod shapes;
+mod srgb;
+mod still_frame;
 mod target;
 mod trim_texture;
 mod view_data;
@@ -25,212 +30,11 @@ mod visible;
 
 pub use camera::{Camera, Projection, View};
 pub use choice::PIXEL_ERROR;
-pub use exact::ExactRenderer;
-pub use exact_scene::{ExactScene, FrameCounts};
+pub use face_renderer::FaceRenderer;
+pub use face_scene::FaceScene;
+pub use frame_counts::FrameCounts;
 pub use mesh_shapes::{Legend, mesh_scenery, scene_outline};
+pub use options::{Background, Normals, RenderOptions, SectionPlane, Style, Trim};
 pub use picture::Picture;
 pub use renderer::Renderer;
 pub use shapes::{Placed, Scenery, Shape, Vertex};
-
-use glam::DVec3;
-
-/// What is seen of a model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Style {
-    /// Lit faces in the model's colours, with its edges as lines.
-    #[default]
-    Shaded,
-    /// The edges alone; those behind faces are hidden.
-    Edges,
-    /// The edges of all triangles over pale faces.
-    Wireframe,
-    /// Mean curvature of the exact surfaces: red where the outside is convex, blue where it is hollow.
-    Curvature,
-    /// Distance between the mesh and the exact surfaces.
-    Error,
-}
-
-/// What is behind the model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Background {
-    /// Linear red, green, blue.
-    Color([f64; 3]),
-    Transparent,
-}
-
-impl Background {
-    pub const LIGHT: Self = Self::Color([0.913, 0.922, 0.939]);
-    pub const DARK: Self = Self::Color([0.0080, 0.0091, 0.0130]);
-
-    /// True where lines must be light to be seen.
-    fn is_dark(self) -> bool {
-        match self {
-            Self::Color([r, g, b]) => 0.21 * r + 0.72 * g + 0.07 * b < 0.18,
-            Self::Transparent => false,
-        }
-    }
-}
-
-impl std::str::FromStr for Background {
-    type Err = String;
-
-    /// `light`, `dark`, `transparent` or `#rrggbb`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "light" => return Ok(Self::LIGHT),
-            "dark" => return Ok(Self::DARK),
-            "transparent" => return Ok(Self::Transparent),
-            _ => {}
-        }
-        let hex =
-            text.strip_prefix('#').filter(|h| h.len() == 6).and_then(|h| u32::from_str_radix(h, 16).ok());
-        let Some(hex) = hex else { return Err("neither light, dark, transparent nor #rrggbb".into()) };
-        Ok(Self::Color([16, 8, 0].map(|shift| linear((hex >> shift & 255) as f64 / 255.0))))
-    }
-}
-
-/// What lies where `normal · p > offset` (millimetres) is cut away.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SectionPlane {
-    pub normal: DVec3,
-    pub offset: f64,
-}
-
-/// How exact faces are trimmed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Trim {
-    /// Every sample of a pixel against the curves themselves, at any zoom.
-    #[default]
-    Exact,
-    /// By a texture drawn for the view, in which loops are counted even and odd (Krishnamurthy, Khardekar, McMains 2009).
-    Texture,
-}
-
-/// The normals that exact faces are lit by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Normals {
-    /// Evaluated in every pixel; interpolated at poles, and on surfaces whose Bézier nets the device cannot bind.
-    #[default]
-    Exact,
-    /// Those of the samples, interpolated between them.
-    Interpolated,
-}
-
-/// How a picture is taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct RenderOptions {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    pub view: View,
-    pub projection: Projection,
-    /// Above 1: nearer.
-    pub zoom: f64,
-    /// Move a camera with a place of its own so that it sees everything; named views always do.
-    pub fit: bool,
-    pub style: Style,
-    /// Draw the lines of the style.
-    pub lines: bool,
-    pub background: Background,
-    pub section: Option<SectionPlane>,
-    /// Of exact faces.
-    pub trim: Trim,
-    /// Of exact faces.
-    pub normals: Normals,
-    /// Leave out what the picture cannot show: faces beyond it, and backs of closed shells. Of exact faces.
-    pub reject: bool,
-}
-
-impl Default for RenderOptions {
-    fn default() -> Self {
-        Self {
-            size: [1280, 960],
-            view: View::From { direction: DVec3::new(1.0, -1.0, 0.8), up: DVec3::Z },
-            projection: Projection::Orthographic,
-            zoom: 1.0,
-            fit: false,
-            style: Style::Shaded,
-            lines: true,
-            background: Background::LIGHT,
-            section: None,
-            trim: Trim::Exact,
-            normals: Normals::Exact,
-            reject: true,
-        }
-    }
-}
-
-impl RenderOptions {
-    pub fn with_size(self, width: u32, height: u32) -> Self {
-        Self { size: [width, height], ..self }
-    }
-    pub fn with_view(self, view: View) -> Self {
-        Self { view, ..self }
-    }
-    pub fn with_projection(self, projection: Projection) -> Self {
-        Self { projection, ..self }
-    }
-    pub fn with_zoom(self, zoom: f64) -> Self {
-        Self { zoom, ..self }
-    }
-    pub fn with_fit(self, fit: bool) -> Self {
-        Self { fit, ..self }
-    }
-    pub fn with_style(self, style: Style) -> Self {
-        Self { style, ..self }
-    }
-    pub fn with_lines(self, lines: bool) -> Self {
-        Self { lines, ..self }
-    }
-    pub fn with_background(self, background: Background) -> Self {
-        Self { background, ..self }
-    }
-    pub fn with_section(self, section: Option<SectionPlane>) -> Self {
-        Self { section, ..self }
-    }
-    pub fn with_trim(self, trim: Trim) -> Self {
-        Self { trim, ..self }
-    }
-    pub fn with_normals(self, normals: Normals) -> Self {
-        Self { normals, ..self }
-    }
-    pub fn with_reject(self, reject: bool) -> Self {
-        Self { reject, ..self }
-    }
-
-    /// The camera for what is to be seen.
-    pub fn camera(&self, points: &[DVec3]) -> Camera {
-        Camera::looking_at(self.view, self.projection, points, self.size, self.zoom, self.fit)
-    }
-}
-
-/// Linear light of an sRGB value, both 0..=1.
-pub(crate) fn linear(srgb: f64) -> f64 {
-    if srgb <= 0.04045 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
-}
-
-/// The sRGB value of linear light, both 0..=1.
-pub(crate) fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn backgrounds_have_names_and_numbers() {
-        assert_eq!("dark".parse(), Ok(Background::DARK));
-        assert_eq!("#ffffff".parse(), Ok(Background::Color([1.0; 3])));
-        assert!("#fff".parse::<Background>().is_err() && "blue".parse::<Background>().is_err());
-        assert!(Background::DARK.is_dark() && !Background::LIGHT.is_dark());
-    }
-
-    #[test]
-    fn srgb_and_linear_are_inverse() {
-        for k in 0..=255 {
-            let x = f64::from(k) / 255.0;
-            assert!((srgb(linear(x)) - x).abs() < 1e-6);
-        }
-    }
-}

@@ -1,6 +1,6 @@
 //! Pictures: sRGB pixels with opacity, to PNG and back, and how different two look.
 
-use crate::GpuError;
+use crate::error::GpuError;
 use std::io::Cursor;
 
 /// Rows of pixels from the top, red, green, blue and opacity, not premultiplied.

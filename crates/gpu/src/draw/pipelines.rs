@@ -1,6 +1,7 @@
 //! Pipelines for drawing into pictures, and what is bound to them.
 
-use crate::{Gpu, Shader};
+use crate::device::Gpu;
+use crate::shaders::Shader;
 use wgpu::{BindGroup, BindingResource, Buffer, RenderPipeline, ShaderModule, TextureFormat};
 
 /// The formats of pictures, and the samples of each of their pixels.

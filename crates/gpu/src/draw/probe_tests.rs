@@ -1,28 +1,19 @@
 //! The normals that fragments are lit by, read back as numbers, against double precision.
 
 use super::*;
-use crate::SurfaceSet;
-use crate::draw::Camera;
-use crate::draw::Normals;
-use crate::draw::exact_normal::exact_normal;
+use crate::draw::face_normal::face_normal;
 use crate::draw::pipelines::{DEPTH, pipeline_into};
 use crate::evaluate::read_back;
-use crate::exact::ExactFace;
-use crate::{DeviceChoice, Real, exact_model, shaders};
-use chordal::{Job, JobOptions, Outcome, Tolerance};
+use crate::faces::TrimmedFace;
+use crate::test_support::models::{Meshed, meshed};
+use crate::test_support::{gpu, no_gpu};
+use crate::{Camera, Normals, Real, SurfaceSet, shaders, trimmed_model};
 use chordal_nurbs::{DVec2, Surface};
 use glam::DMat3;
-use std::path::Path;
 use wgpu::{RenderPipeline, TextureFormat, TextureUsages};
 
 const FORMATS: [TextureFormat; 2] = [TextureFormat::Rgba32Float; 2];
 const SIZE: [u32; 2] = [160, 120];
-
-fn meshed(model: &str) -> Outcome {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(model);
-    let options = JobOptions::default().with_tolerance(Tolerance::Percent(0.5));
-    chordal::run(&Job::new(path).with_options(options)).expect("the corpus is meshed")
-}
 
 /// What one pixel shows of one face.
 struct Seen {
@@ -37,26 +28,26 @@ struct Seen {
     twin: DVec3,
 }
 
-/// The pixels of all exact faces, generation by generation; hidden ones of other generations too.
-fn probe(gpu: &Gpu, outcome: &Outcome, options: &RenderOptions) -> (ExactModel, Camera, Vec<Seen>) {
-    let (renderer, exact) = (Renderer::new(gpu).unwrap(), ExactRenderer::new(gpu).unwrap());
-    let model = exact_model(&outcome.scene, &outcome.model);
+/// The pixels of all exact faces, batch by batch; hidden ones of other batches too.
+fn probe(gpu: &Gpu, outcome: &Meshed, options: &RenderOptions) -> (TrimmedModel, Camera, Vec<Seen>) {
+    let (renderer, exact) = (Renderer::new(gpu).unwrap(), FaceRenderer::new(gpu).unwrap());
+    let model = trimmed_model(&outcome.scene, &outcome.model);
     let mut scene =
-        ExactScene::new(gpu, model.clone(), (&outcome.scene, &outcome.model), Style::Shaded).unwrap();
+        FaceScene::new(gpu, model.clone(), (&outcome.scene, &outcome.model), Style::Shaded).unwrap();
     scene.draw(gpu, (&renderer, &exact), options).unwrap();
-    let pipeline = pipeline_into(gpu, shaders::EXACT, ["vertex", "fragment_probe"], &[], (&FORMATS, 1));
+    let pipeline = pipeline_into(gpu, shaders::FACE, ["vertex", "fragment_probe"], &[], (&FORMATS, 1));
     let mut found = Vec::new();
     for (id, list) in &scene.lists {
         let places: BTreeMap<usize, (usize, usize)> = scene
             .sampled
             .iter()
             .flat_map(|((part, _), faces)| faces.iter().enumerate().map(move |(face, s)| (*part, face, s)))
-            .filter_map(|(part, face, s)| Some((s.filter(|s| s.generation == *id)?.index, (part, face))))
+            .filter_map(|(part, face, s)| Some((s.filter(|s| s.batch == *id)?.index, (part, face))))
             .collect();
-        let [spots, normals] = frame(gpu, &pipeline, (&exact, &scene), (&scene.generations[id], list));
-        let generation = &scene.generations[id];
-        let (data, places_of) = generation.known(gpu).unwrap();
-        let net = &scene.residents[generation.resident].set.bezier;
+        let [spots, normals] = frame(gpu, &pipeline, (&exact, &scene), (&scene.batches[id], list));
+        let batch = &scene.batches[id];
+        let (data, places_of) = batch.known(gpu).unwrap();
+        let net = &scene.stores[batch.store].set.bezier;
         for (k, (spot, normal)) in spots.iter().zip(&normals).enumerate() {
             if spot[3] == 0.0 {
                 continue;
@@ -68,19 +59,19 @@ fn probe(gpu: &Gpu, outcome: &Outcome, options: &RenderOptions) -> (ExactModel, 
                 face,
                 spot: DVec2::new(spot[0].into(), spot[1].into()),
                 normal: DVec3::from([0, 1, 2].map(|c| f64::from(normal[c]))),
-                twin: exact_normal(&data[spot[2] as usize], &places_of, net, [spot[0], spot[1]]).as_dvec3(),
+                twin: face_normal(&data[spot[2] as usize], &places_of, net, [spot[0], spot[1]]).as_dvec3(),
             });
         }
     }
     (model, options.camera(&scene.outline), found)
 }
 
-/// Draws the faces of one generation into two targets of numbers.
+/// Draws the faces of one batch into two targets of numbers.
 fn frame(
     gpu: &Gpu,
     pipeline: &RenderPipeline,
-    (exact, scene): (&ExactRenderer, &ExactScene),
-    (generation, list): (&Generation, &List),
+    (exact, scene): (&FaceRenderer, &FaceScene),
+    (batch, list): (&FaceBatch, &List),
 ) -> [Vec<[f32; 4]>; 2] {
     let texture = |format, usage| {
         gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -109,9 +100,9 @@ fn frame(
             ops,
         })
     };
-    let blocks = Blocks::new(gpu, [pipeline, &exact.borders], generation.cells(), &list.drawn).unwrap();
-    let resident = &scene.residents[generation.resident];
-    let group = generation.probe_group(gpu, pipeline, resident, scene.stage.buffers());
+    let blocks = Blocks::new(gpu, [pipeline, &exact.borders], batch.cells(), &list.drawn).unwrap();
+    let store = &scene.stores[batch.store];
+    let group = batch.probe_group(gpu, pipeline, store, scene.stage.buffers());
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -152,7 +143,7 @@ fn frame(
 }
 
 /// Part to view for normals, of a part that is placed once.
-fn turn(outcome: &Outcome, camera: &Camera, part: usize) -> DMat3 {
+fn turn(outcome: &Meshed, camera: &Camera, part: usize) -> DMat3 {
     let placements = outcome.scene.placements();
     let world = placements.iter().find(|p| p.part == part).expect("it is seen").world;
     let view = camera.view.matrix3 * world.matrix3;
@@ -165,7 +156,7 @@ fn turn(outcome: &Outcome, camera: &Camera, part: usize) -> DMat3 {
 /// Each homogeneous derivative is a sum of differences that carry 12 n + 4 roundings of control points up to √3 from the
 /// middle (as in `SurfaceEntry::point_bound`), times the degree; the quotient has as many again of the point, and the weights may
 /// be ρ times smaller than the largest: √3 ρ p (36 n + 24) units. The place is rounded to 8 units of the face's square.
-fn normal_in_double(face: &ExactFace, entry: &crate::SurfaceEntry, spot: DVec2) -> Option<(DVec3, f64)> {
+fn normal_in_double(face: &TrimmedFace, entry: &crate::SurfaceEntry, spot: DVec2) -> Option<(DVec3, f64)> {
     let low = face.parameters.nurbs_from_native(face.uv.min);
     let over = face.parameters.nurbs_from_native(face.uv.max) - low;
     let uv = low + spot * over;
@@ -195,7 +186,10 @@ fn normal_in_double(face: &ExactFace, entry: &crate::SurfaceEntry, spot: DVec2) 
 /// spheres, tori, a rational duck, splines up to degree 100. Interpolated ones are far from it.
 #[test]
 fn normals_of_pixels_are_those_of_the_surface() {
-    let gpu = Gpu::open(DeviceChoice::Best).unwrap_or_else(|error| panic!("{error}"));
+    if no_gpu() {
+        return;
+    }
+    let gpu = gpu();
     let options = RenderOptions::default().with_size(SIZE[0], SIZE[1]).with_lines(false);
     let models = [
         "sphere_holes.step",
@@ -209,10 +203,10 @@ fn normals_of_pixels_are_those_of_the_surface() {
         "iv/duck.iv",
     ];
     for name in models {
-        let outcome = meshed(name);
+        let outcome = meshed(name, 0.5);
         let mut worst = [0.0_f64; 2];
         for (k, normals) in [Normals::Exact, Normals::Interpolated].into_iter().enumerate() {
-            let (model, camera, seen) = probe(&gpu, &outcome, &options.with_normals(normals));
+            let (model, camera, seen) = probe(gpu, &outcome, &options.with_normals(normals));
             let mut left_out = 0;
             for pixel in &seen {
                 let face = &model.parts[pixel.part].faces[pixel.face];
@@ -241,10 +235,13 @@ fn normals_of_pixels_are_those_of_the_surface() {
 /// error of half a pixel and the half that is allowed to the picture.
 #[test]
 fn normals_of_a_sphere_are_those_that_its_pixels_look_at() {
-    let gpu = Gpu::open(DeviceChoice::Best).unwrap_or_else(|error| panic!("{error}"));
+    if no_gpu() {
+        return;
+    }
+    let gpu = gpu();
     let options = RenderOptions::default().with_size(SIZE[0], SIZE[1]).with_lines(false);
-    let outcome = meshed("sphere_full.step");
-    let (_, camera, seen) = probe(&gpu, &outcome, &options);
+    let outcome = meshed("sphere_full.step", 0.5);
+    let (_, camera, seen) = probe(gpu, &outcome, &options);
     let chordal_brep::FaceGeometry::Surface(surface) = &outcome.model.parts[0].faces[0].geometry else {
         panic!("a sphere is a surface")
     };

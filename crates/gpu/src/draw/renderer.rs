@@ -2,12 +2,16 @@
 
 use super::mesh_groups::{Lines, Triangles};
 use super::mesh_shapes::scene_outline;
+use super::options::{Background, RenderOptions};
+use super::picture::Picture;
 use super::pipelines::{bind_group, pipeline};
+use super::shapes::Scenery;
 use super::target::Target;
 use super::view_data::{PlacementData, ViewData, standing, view_data};
-use super::{Background, ExactRenderer, ExactScene, FrameCounts, Picture, RenderOptions, Scenery};
+use crate::device::Gpu;
+use crate::error::GpuError;
 use crate::evaluate::empty_storage;
-use crate::{Gpu, GpuError, shaders};
+use crate::shaders;
 use chordal_mesh::Scene;
 use std::ops::Range;
 use wgpu::{Buffer, BufferUsages, RenderPass, RenderPipeline};
@@ -34,7 +38,7 @@ impl Renderer {
         let entries = ["vertex", "fragment"];
         gpu.watched("compiling shaders", || {
             Ok(Self {
-                faces: pipeline(gpu, shaders::FACES, entries, &[Some(corners)]),
+                faces: pipeline(gpu, shaders::MESH, entries, &[Some(corners)]),
                 lines: pipeline(gpu, shaders::LINES, entries, &[]),
             })
         })
@@ -74,36 +78,6 @@ impl Renderer {
             Ok(())
         })?;
         target.read(gpu, options.background)
-    }
-
-    /// Draws a frame of exact faces and leaves it on the device; what has no exact form is drawn as its mesh.
-    /// Styles that measure or show the mesh are drawn from it, by [`Self::render`].
-    ///
-    /// # Errors
-    /// As [`Self::render`].
-    pub fn draw_exact(
-        &self,
-        gpu: &Gpu,
-        exact: &ExactRenderer,
-        scene: &mut ExactScene,
-        options: &RenderOptions,
-    ) -> Result<FrameCounts, GpuError> {
-        scene.draw(gpu, (self, exact), options)
-    }
-
-    /// As [`Self::draw_exact`], and brings the picture to the host.
-    ///
-    /// # Errors
-    /// As [`Self::render`].
-    pub fn render_exact(
-        &self,
-        gpu: &Gpu,
-        exact: &ExactRenderer,
-        scene: &mut ExactScene,
-        options: &RenderOptions,
-    ) -> Result<(Picture, FrameCounts), GpuError> {
-        let counts = scene.draw(gpu, (self, exact), options)?;
-        Ok((scene.read(gpu, options.background)?, counts))
     }
 
     pub(crate) fn draw_triangles(

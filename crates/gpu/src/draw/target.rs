@@ -1,9 +1,12 @@
 //! The textures that a picture is drawn into, and its way to the host.
 
+use super::options::Background;
+use super::picture::Picture;
 use super::pipelines::{COLOR, DEPTH, SAMPLES};
-use super::{Background, Picture, linear, srgb};
+use super::srgb::{linear, srgb};
+use crate::device::Gpu;
+use crate::error::GpuError;
 use crate::evaluate::read_back;
-use crate::{Gpu, GpuError};
 use wgpu::{BufferUsages, RenderPass};
 
 /// The textures that a picture is drawn into.

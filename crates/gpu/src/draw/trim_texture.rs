@@ -10,9 +10,11 @@
 //! Unlike the exact test it has the resolution that it was made for: closer up, curves show the texels.
 
 use super::pipelines::{bind_group, module};
+use crate::device::Gpu;
+use crate::error::GpuError;
 use crate::evaluate::storage;
-use crate::exact::Cubic;
-use crate::{Gpu, GpuError, shaders};
+use crate::faces::Cubic;
+use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use wgpu::{Buffer, RenderPipeline, TextureFormat, TextureUsages, TextureView};
 

@@ -1,7 +1,9 @@
 //! The view and the placements as the shaders read them.
 
+use super::camera::Camera;
 use super::mesh_shapes::opacity;
-use super::{Background, Camera, Normals, Placed, RenderOptions, Scenery, Style};
+use super::options::{Background, Normals, RenderOptions, Style};
+use super::shapes::{Placed, Scenery};
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DMat3, DMat4, Mat4};
 

@@ -1,12 +1,13 @@
 //! The lines of a model's edges, as fine as the view needs.
 
-use super::Scenery;
 use super::mesh_groups::Lines;
 use super::mesh_shapes::local;
 use super::renderer::Renderer;
+use super::shapes::Scenery;
 use super::visible::Visible;
-use crate::exact::edge_lines;
-use crate::{Gpu, GpuError};
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::faces::edge_lines;
 use chordal_brep::Model;
 use chordal_mesh::Scene;
 use std::collections::BTreeMap;

@@ -1,8 +1,9 @@
 //! What a view may show: rejection of parts and faces by bounds that hold them, and of backs by cones of normals.
 
+use super::camera::Camera;
 use super::choice::PIXEL_ERROR;
-use super::{Camera, Scenery};
-use crate::exact::ExactFace;
+use super::shapes::Scenery;
+use crate::faces::TrimmedFace;
 use glam::{DAffine3, DVec3, DVec4};
 use std::ops::Range;
 
@@ -60,7 +61,7 @@ impl Frustum {
     }
 
     /// True where the face shows its back alone, and lies on a closed shell that is seen from outside.
-    pub fn faces_away(&self, eye: &Eye, face: &ExactFace) -> bool {
+    pub fn faces_away(&self, eye: &Eye, face: &TrimmedFace) -> bool {
         let (Some(cone), Some([low, high])) = (face.outward, face.bounds) else { return false };
         match *eye {
             Eye::Inside => false,
@@ -122,7 +123,7 @@ const ASKED: usize = 16;
 
 impl Level {
     /// Whether some placement may show the face: in the picture, and, where backs are left out, from its outside.
-    pub fn shows(&self, frustum: &Frustum, face: &ExactFace, leave_out_backs: bool) -> Shown {
+    pub fn shows(&self, frustum: &Frustum, face: &TrimmedFace, leave_out_backs: bool) -> Shown {
         if self.whole && !(leave_out_backs && face.outward.is_some()) {
             return Shown::Yes;
         }

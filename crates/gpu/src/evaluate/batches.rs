@@ -3,9 +3,11 @@
 //! A request stays whole where it fits into a batch by itself, so that who draws a grid finds it in one buffer; one that
 //! does not is cut between its heads, which hold [`crate::samples::HEAD_POINTS`] points at most.
 
-use super::{Variant, Wanted};
+use super::plan::{Variant, Wanted};
 use crate::layout::{Head, Row, Tile};
-use crate::{Real, Samples, SurfaceSet};
+use crate::real::Real;
+use crate::samples::Samples;
+use crate::surfaces::SurfaceSet;
 use std::ops::Range;
 
 /// Bytes of each of the buffers that grow with the samples.

@@ -1,6 +1,9 @@
 //! The surfaces of a set as buffers on the device.
 
-use crate::{Edit, Gpu, GpuError, Real, SurfaceSet};
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::real::Real;
+use crate::surfaces::{Edit, SurfaceSet};
 use std::marker::PhantomData;
 use std::ops::Range;
 use wgpu::{Buffer, BufferUsages};

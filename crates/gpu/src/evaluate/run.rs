@@ -1,17 +1,24 @@
 //! Dispatches: passes over basis rows where the variant has them, then one over all points of all surfaces.
 
 use super::batches::batches as batches_of;
+use super::on_device::OnDevice;
 use super::on_device::{empty_storage, storage};
-use super::{OnDevice, Plan, Search, Variant, Wanted};
+use super::plan::{Plan, Search, Variant, Wanted};
+use crate::device::Gpu;
+use crate::error::GpuError;
 use crate::layout::Params;
-use crate::{Gpu, GpuError, Real, Samples, Shader, SurfaceSet, shaders};
+use crate::real::Real;
+use crate::samples::Samples;
+use crate::shaders;
+use crate::shaders::Shader;
+use crate::surfaces::SurfaceSet;
 use std::marker::PhantomData;
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages, ComputePass, ComputePipeline};
 
 /// The compiled kernels of one variant.
 #[derive(Debug)]
-pub struct Evaluator<R> {
+pub struct KernelRunner<R> {
     variant: Variant,
     search: Search,
     passes: Option<ComputePipeline>,
@@ -25,7 +32,7 @@ pub struct Evaluator<R> {
 /// Workgroups along one axis of a dispatch.
 const MOST_GROUPS: u32 = 65_535;
 
-impl<R: Real> Evaluator<R> {
+impl<R: Real> KernelRunner<R> {
     /// Compiles a variant.
     ///
     /// # Errors

@@ -2,8 +2,8 @@
 
 use super::basis_pass::{PassRow, pass};
 use super::vector::V4;
-use crate::Real;
 use crate::layout::{Params, Row};
+use crate::real::Real;
 
 pub(crate) fn basis_packed<R: Real>(params: Params, packs: &[Row], windows: &[R], basis: &mut [R]) {
     let windows: &[V4<R>] = bytemuck::cast_slice(windows);

@@ -1,7 +1,7 @@
 //! Twin of `basis_pass.wgsl`: one pass of the paper's recursion (Krishnamurthy et al. 2009, section 4).
 
-use crate::Real;
 use crate::layout::Params;
+use crate::real::Real;
 use bytemuck::Pod;
 use std::ops::{Add, Mul, Sub};
 

@@ -2,8 +2,8 @@
 
 use super::basis_pass::{PassRow, pass};
 use super::vector::V1;
-use crate::Real;
 use crate::layout::{Params, Row, Span};
+use crate::real::Real;
 
 pub(crate) fn basis_unpacked<R: Real>(
     params: Params,

@@ -1,9 +1,10 @@
 //! Twin of `bernstein.wgsl`: every span's Bézier net, cell by cell.
 
 use super::bezier::{Cell, Horner, second_factor, tangents_at};
+use super::samples::Sample;
 use super::samples::{Inputs, Jet};
-use super::{Sample, V4};
-use crate::Real;
+use super::vector::V4;
+use crate::real::Real;
 
 fn cell_of<R: Real>(inputs: &Inputs<R>, s: &Sample) -> Cell<R> {
     let (u, v) = (inputs.span(s.row_u), inputs.span(s.row_v));

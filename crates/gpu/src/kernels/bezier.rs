@@ -1,8 +1,8 @@
 //! Twin of `bezier.wgsl`: one Bézier net, summed by Horner's rule for Bernstein polynomials.
 
-use super::V4;
 use super::normal::{Tangents, tangents_of};
-use crate::Real;
+use super::vector::V4;
+use crate::real::Real;
 
 /// The terms of one difference of order k: its running sum and C(n-k, i) tⁱ.
 #[derive(Clone, Copy)]

@@ -1,11 +1,12 @@
 //! Twin of `direct.wgsl`: basis functions and sum in one kernel.
 
 use super::normal::tangents_of;
+use super::samples::Sample;
 use super::samples::{Inputs, Jet};
 use super::tensor::control;
-use super::{Sample, V4};
-use crate::Real;
+use super::vector::V4;
 use crate::layout::Span;
+use crate::real::Real;
 
 const PLANE: usize = 101;
 

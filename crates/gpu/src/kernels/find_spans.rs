@@ -1,7 +1,7 @@
 //! Twin of `find_spans.wgsl`: the knot span of every parameter value by bisection, and the place within it.
 
-use crate::Real;
 use crate::layout::{Direction, Row};
+use crate::real::Real;
 
 pub(crate) fn find_spans<R: Real>(
     directions: &[Direction],

@@ -12,7 +12,4 @@ pub(crate) mod find_spans;
 pub(crate) mod normal;
 pub(crate) mod samples;
 pub(crate) mod tensor;
-mod vector;
-
-pub(crate) use samples::{Inputs, Sample};
-pub(crate) use vector::{V3, V4};
+pub(crate) mod vector;

@@ -1,7 +1,7 @@
 //! Twin of `normal.wgsl`: from homogeneous derivatives to the point, its tangents and the normal between them.
 
-use super::{V3, V4};
-use crate::Real;
+use super::vector::{V3, V4};
+use crate::real::Real;
 
 /// A point and its first derivatives by the parameters of the span.
 #[derive(Clone, Copy)]

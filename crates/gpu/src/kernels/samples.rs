@@ -1,9 +1,9 @@
 //! Twin of `samples.wgsl`.
 
 use super::normal::{Tangents, tangents_of, unit_normal};
-use super::{V3, V4};
-use crate::Real;
+use super::vector::{V3, V4};
 use crate::layout::{Head, Params, Row, Span, Tile};
+use crate::real::Real;
 
 /// The buffers of the point kernels.
 pub(crate) struct Inputs<'a, R> {

@@ -1,9 +1,10 @@
 //! Twin of `tensor.wgsl`: sums control points times basis functions that passes have left in a buffer.
 
 use super::normal::tangents_of;
+use super::samples::Sample;
 use super::samples::{Inputs, Jet};
-use super::{Sample, V4};
-use crate::Real;
+use super::vector::V4;
+use crate::real::Real;
 
 fn function_of<R: Real>(inputs: &Inputs<R>, row: usize, degree: u32, plane: u32, column: u32) -> R {
     if degree == 0 {

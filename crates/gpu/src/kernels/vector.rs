@@ -1,7 +1,7 @@
 //! WGSL's numbers and its vectors of three and four, component by component.
 
 use super::basis_pass::Value;
-use crate::Real;
+use crate::real::Real;
 use bytemuck::{Pod, Zeroable};
 
 macro_rules! vector {

@@ -1,18 +1,47 @@
-//! The device of the tests, and surfaces to evaluate.
+//! The device of the tests, surfaces to evaluate, and meshed models.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
-use chordal_gpu::{DeviceChoice, Gpu};
+pub mod models;
+
+use chordal_gpu::{DeviceChoice, Gpu, GpuError};
 use chordal_nurbs::{DVec3, NurbsSurface};
+use std::io::Write;
 use std::sync::OnceLock;
 
-/// The device that tests run on: never skipped. Without one the test fails and says what to install.
+/// The device that tests run on. A test calls [`no_gpu`] first.
 pub fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| {
-        let gpu = Gpu::open(DeviceChoice::Best).unwrap_or_else(|error| panic!("{error}"));
-        eprintln!("adapter: {}", gpu.name());
-        gpu
-    })
+    opened().expect("the test has asked no_gpu")
+}
+
+/// True without a device: the test is skipped then, and a line on standard error says so.
+///
+/// `CHORDAL_REQUIRE_GPU=1` makes such a test fail instead; CI sets it where it has installed a device.
+pub fn no_gpu() -> bool {
+    let skipped = opened().is_none();
+    if skipped {
+        let thread = std::thread::current();
+        let name = thread.name().unwrap_or("a test");
+        // Not by a macro: the test harness hides what a passing test prints by macros.
+        let _ = writeln!(std::io::stderr(), "{name}: skipped: no {} device", chordal_gpu::BACKENDS);
+    }
+    skipped
+}
+
+fn opened() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
+    let open = || match Gpu::open(DeviceChoice::Best) {
+        Ok(gpu) => {
+            eprintln!("adapter: {}", gpu.name());
+            Some(gpu)
+        }
+        Err(error @ (GpuError::NoDevice { .. } | GpuError::Lacks { .. })) => {
+            let required = std::env::var_os("CHORDAL_REQUIRE_GPU").is_some_and(|v| v != "0");
+            assert!(!required, "CHORDAL_REQUIRE_GPU is set, but {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    };
+    GPU.get_or_init(open).as_ref()
 }
 
 /// A small generator: the same numbers everywhere.

@@ -1,24 +1,27 @@
 //! glTF 2.0, binary (GLB) or as text: triangles of every placed mesh, in scene coordinates, with the face ids of `TM_brep_faces`.
 
 use super::bytes::Cursor;
+use super::error::{AccessorFault, Fault, ImportFault};
 use super::ply::unit_mm;
-use super::reverses;
-use super::weld::Builder;
+use super::weld::{Builder, reverses};
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde_json::Value;
 
-/// More triangles than this are a small file that repeats itself without end, not a mesh.
+/// The most triangles that are read with every instance counted.
+///
+/// Instances of instances let a file of a kilobyte state more triangles than any memory holds. A smaller limit would refuse
+/// large assemblies; a larger one would need over 10 GB.
 pub(super) const MOST_TRIANGLES: u64 = 200_000_000;
 
 /// Reads a binary file (GLB): the JSON in its first chunk, the buffer in its second.
-pub(super) fn read_binary(bytes: &[u8], builder: &mut Builder) -> Result<(), String> {
+pub(super) fn read_binary(bytes: &[u8], builder: &mut Builder) -> Result<(), Fault> {
     let (json, binary) = chunks(bytes)?;
     read(&parse(json)?, binary, builder)
 }
 
 /// Reads JSON text, whose one buffer must be embedded as a data URI.
-pub(super) fn read_text(bytes: &[u8], builder: &mut Builder) -> Result<(), String> {
+pub(super) fn read_text(bytes: &[u8], builder: &mut Builder) -> Result<(), Fault> {
     let mut root = parse(bytes)?;
     let binary = match root["buffers"].get_mut(0) {
         Some(buffer) => embedded(&mut buffer["uri"])?,
@@ -27,39 +30,40 @@ pub(super) fn read_text(bytes: &[u8], builder: &mut Builder) -> Result<(), Strin
     read(&root, &binary, builder)
 }
 
-fn parse(json: &[u8]) -> Result<Value, String> {
-    serde_json::from_slice(json).map_err(|e| format!("its JSON is broken: {e}"))
+fn parse(json: &[u8]) -> Result<Value, Fault> {
+    serde_json::from_slice(json).map_err(|e| ImportFault::Json { reason: e.to_string() }.into())
 }
 
 /// Takes the bytes of a data URI out of the JSON, so that accessors find them as they find a binary chunk.
-fn embedded(uri: &mut Value) -> Result<Vec<u8>, String> {
+fn embedded(uri: &mut Value) -> Result<Vec<u8>, Fault> {
     let uri = uri.take();
     let data = uri.as_str().and_then(|u| u.strip_prefix("data:")).and_then(|u| u.split_once(";base64,"));
-    let (_, text) = data.ok_or("its buffer lies in another file")?;
-    BASE64_STANDARD.decode(text).map_err(|e| format!("its embedded buffer is broken: {e}"))
+    let (_, text) = data.ok_or(ImportFault::OtherFile)?;
+    BASE64_STANDARD.decode(text).map_err(|e| ImportFault::Base64 { reason: e.to_string() }.into())
 }
 
-fn read(root: &Value, binary: &[u8], builder: &mut Builder) -> Result<(), String> {
+fn read(root: &Value, binary: &[u8], builder: &mut Builder) -> Result<(), Fault> {
     let file = File { root, binary };
     let extras = &root["asset"]["extras"];
     builder.unit_mm = extras["unit"].as_str().and_then(|u| unit_mm(u.as_bytes())).or(Some(1000.0));
     builder.y_up = extras["up"].as_str() != Some("z");
     if let Some(needed) = root["extensionsRequired"].as_array().and_then(|e| e.first()) {
-        return Err(format!("it needs the extension {needed}, which is not read"));
+        let name = needed.as_str().unwrap_or_default().to_owned();
+        return Err(ImportFault::Extension { name }.into());
     }
     file.read_scene(builder)
 }
 
 /// The JSON and the binary chunk.
-fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
+fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), Fault> {
     let mut cursor = Cursor { rest: bytes };
     if cursor.take(4) != Some(b"glTF") {
-        return Err("it does not start with `glTF`".to_owned());
+        return Err(ImportFault::Start { expected: "glTF" }.into());
     }
     match (cursor.u32_le(), cursor.u32_le()) {
         (Some(2), Some(_)) => {}
-        (Some(version), Some(_)) => return Err(format!("it has version {version}, not 2")),
-        _ => return Err("it ends inside its header".to_owned()),
+        (Some(version), Some(_)) => return Err(ImportFault::Version { version, supported: 2 }.into()),
+        _ => return Err(ImportFault::EndsInside { what: "header" }.into()),
     }
     let mut chunk = |kind: &[u8]| {
         let length = cursor.u32_le()? as usize;
@@ -68,7 +72,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
         }
         cursor.take(length)
     };
-    let json = chunk(b"JSON").ok_or("it has no complete JSON chunk")?;
+    let json = chunk(b"JSON").ok_or(ImportFault::Missing { what: "complete JSON chunk" })?;
     Ok((json, chunk(b"BIN\0").unwrap_or_default()))
 }
 
@@ -85,16 +89,16 @@ struct Count {
 }
 
 impl File<'_> {
-    fn read_scene(&self, builder: &mut Builder) -> Result<(), String> {
+    fn read_scene(&self, builder: &mut Builder) -> Result<(), Fault> {
         let nodes = self.root["nodes"].as_array().map_or(&[][..], Vec::as_slice);
         let mut visited = vec![false; nodes.len()];
         let mut count = Count::default();
         let mut stack: Vec<_> =
             self.roots(nodes).into_iter().rev().map(|n| (n, DAffine3::IDENTITY)).collect();
         while let Some((index, parent)) = stack.pop() {
-            let node = nodes.get(index).ok_or_else(|| format!("there is no node {index}"))?;
+            let node = nodes.get(index).ok_or_else(|| unknown("node", index))?;
             if std::mem::replace(&mut visited[index], true) {
-                return Err(format!("node {index} has two parents"));
+                return Err(ImportFault::TwoParents { node: index }.into());
             }
             let world = parent * local_transform(node);
             if let Some(mesh) = node["mesh"].as_u64() {
@@ -126,8 +130,8 @@ impl File<'_> {
         world: DAffine3,
         count: &mut Count,
         builder: &mut Builder,
-    ) -> Result<(), String> {
-        let mesh = self.root["meshes"].get(mesh).ok_or_else(|| format!("there is no mesh {mesh}"))?;
+    ) -> Result<(), Fault> {
+        let mesh = self.root["meshes"].get(mesh).ok_or_else(|| unknown("mesh", mesh))?;
         let name = [node, mesh].iter().find_map(|v| v["name"].as_str().filter(|n| !n.is_empty()));
         builder.group(name.unwrap_or_default());
         let mut faces = 0;
@@ -135,7 +139,7 @@ impl File<'_> {
             let triangles = self.triangles(primitive)?;
             count.triangles += triangles.len() as u64;
             if count.triangles > MOST_TRIANGLES {
-                return Err(format!("it places over {MOST_TRIANGLES} triangles"));
+                return Err(ImportFault::TooManyTriangles { limit: MOST_TRIANGLES }.into());
             }
             let positions = self.positions(&primitive["attributes"]["POSITION"], triangles.is_empty())?;
             let face_ids = self.face_ids(primitive, triangles.len())?;
@@ -143,8 +147,9 @@ impl File<'_> {
                 let mut corners = [0; 3];
                 for (corner, index) in corners.iter_mut().zip(triangle) {
                     let p = positions.get(index as usize);
-                    let p = p.ok_or_else(|| {
-                        format!("a triangle refers to vertex {index} of {}", positions.len())
+                    let p = p.ok_or_else(|| ImportFault::UnknownVertex {
+                        vertex: index.to_string(),
+                        vertices: positions.len(),
                     })?;
                     *corner = builder.point(world.transform_point3(*p))?;
                 }
@@ -165,7 +170,7 @@ impl File<'_> {
     }
 
     /// The corners of a primitive's triangles; none for points and lines.
-    fn triangles(&self, primitive: &Value) -> Result<Vec<[u32; 3]>, String> {
+    fn triangles(&self, primitive: &Value) -> Result<Vec<[u32; 3]>, Fault> {
         let mode = primitive["mode"].as_u64().unwrap_or(4);
         if !(4..=6).contains(&mode) {
             return Ok(Vec::new());
@@ -173,7 +178,7 @@ impl File<'_> {
         let corners = match &primitive["indices"] {
             Value::Null => {
                 let positions = self.accessor(&primitive["attributes"]["POSITION"])?;
-                (0..u32::try_from(positions.count).map_err(|_| "it has too many vertices".to_owned())?)
+                (0..u32::try_from(positions.count).map_err(|_| ImportFault::TooManyVertices)?)
                     .collect()
             }
             indices => self.numbers(indices)?,
@@ -190,7 +195,7 @@ impl File<'_> {
         })
     }
 
-    fn face_ids(&self, primitive: &Value, triangles: usize) -> Result<Option<Vec<u32>>, String> {
+    fn face_ids(&self, primitive: &Value, triangles: usize) -> Result<Option<Vec<u32>>, Fault> {
         let accessor = &primitive["extensions"]["TM_brep_faces"]["faceIndices"];
         if accessor.is_null() {
             return Ok(None);
@@ -199,17 +204,17 @@ impl File<'_> {
         if ids.len() == triangles {
             Ok(Some(ids))
         } else {
-            Err(format!("{} face ids stand for {triangles} triangles", ids.len()))
+            Err(ImportFault::FaceIds { ids: ids.len(), triangles }.into())
         }
     }
 
-    fn positions(&self, accessor: &Value, unused: bool) -> Result<Vec<DVec3>, String> {
+    fn positions(&self, accessor: &Value, unused: bool) -> Result<Vec<DVec3>, Fault> {
         if unused {
             return Ok(Vec::new());
         }
         let data = self.accessor(accessor)?;
         if data.component != 5126 || data.kind != "VEC3" {
-            return Err("its positions are not 32-bit floats".to_owned());
+            return Err(broken(accessor, AccessorFault::NotPositions));
         }
         let coordinate = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         Ok(data
@@ -218,21 +223,21 @@ impl File<'_> {
             .collect())
     }
 
-    fn numbers(&self, accessor: &Value) -> Result<Vec<u32>, String> {
+    fn numbers(&self, accessor: &Value) -> Result<Vec<u32>, Fault> {
         let data = self.accessor(accessor)?;
         if data.kind != "SCALAR" || data.component == 5126 {
-            return Err("its indices are not integers".to_owned());
+            return Err(broken(accessor, AccessorFault::NotIntegers));
         }
         let number = |b: &[u8]| b.iter().rev().fold(0_u32, |n, &byte| n << 8 | u32::from(byte));
         Ok(data.items().map(number).collect())
     }
 
-    fn accessor(&self, index: &Value) -> Result<Items<'_>, String> {
-        let name = || format!("accessor {index}");
+    fn accessor(&self, index: &Value) -> Result<Items<'_>, Fault> {
+        let broken = |fault| Err(broken(index, fault));
         let accessor = index.as_u64().and_then(|i| self.root["accessors"].get(i as usize));
-        let accessor = accessor.ok_or_else(|| format!("there is no {}", name()))?;
+        let accessor = accessor.ok_or_else(|| unknown("accessor", index))?;
         if !accessor["sparse"].is_null() {
-            return Err(format!("{} is sparse, which is not read", name()));
+            return broken(AccessorFault::Sparse);
         }
         let unsigned = |v: &Value| v.as_u64().unwrap_or(0) as usize;
         let component = accessor["componentType"].as_u64().unwrap_or(0);
@@ -241,14 +246,14 @@ impl File<'_> {
             5121 => 1,
             5123 => 2,
             5125 | 5126 => 4,
-            other => return Err(format!("{} has the component type {other}", name())),
+            other => return broken(AccessorFault::ComponentType(other)),
         };
         let size = width * if kind == "VEC3" { 3 } else { 1 };
         let count = unsigned(&accessor["count"]);
         let view = accessor["bufferView"].as_u64().and_then(|v| self.root["bufferViews"].get(v as usize));
-        let view = view.ok_or_else(|| format!("{} has no buffer view", name()))?;
+        let Some(view) = view else { return broken(AccessorFault::NoView) };
         if unsigned(&view["buffer"]) != 0 || !self.root["buffers"][0]["uri"].is_null() {
-            return Err(format!("{} lies in another file", name()));
+            return broken(AccessorFault::OtherFile);
         }
         let stride = match unsigned(&view["byteStride"]) {
             0 => size,
@@ -262,9 +267,17 @@ impl File<'_> {
             (Some(bytes), Some(needed)) if needed <= bytes.len() => {
                 Ok(Items { bytes, stride, size, count, component, kind })
             }
-            _ => Err(format!("{} reaches beyond the file", name())),
+            _ => broken(AccessorFault::BeyondBuffer),
         }
     }
+}
+
+fn unknown(what: &'static str, id: impl ToString) -> ImportFault {
+    ImportFault::Unknown { what, id: id.to_string() }
+}
+
+fn broken(accessor: &Value, fault: AccessorFault) -> Fault {
+    ImportFault::Accessor { accessor: accessor.as_u64().unwrap_or(u64::MAX), fault }.into()
 }
 
 /// The items of an accessor, known to lie inside the file.

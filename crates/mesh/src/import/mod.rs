@@ -1,107 +1,67 @@
 //! Reading meshes back: STL, OBJ, PLY, GLB, glTF and 3MF as a soup of welded triangles.
 //!
 //! Points are welded where all bits of their coordinates agree, within one *domain* only: a solid of ASCII STL, an
-//! object of OBJ, a part of a PLY file of ours, a placed mesh of GLB, a build item of 3MF, else the whole file. Parts
-//! that touch stay apart so. Nothing is allocated by a count in a header before the file's length confirms it.
+//! object of OBJ, a part of a PLY file that Chordal wrote, a placed mesh of glTF, a build item of 3MF, else the whole
+//! file. Parts that touch therefore stay separate. Memory is allocated by a header's count only if the length of the
+//! file confirms it.
 
 mod bytes;
+mod error;
 mod gltf;
 mod obj;
 mod ply;
+mod soup;
 mod stl;
 mod threemf;
 mod weld;
 mod xml;
 
-use glam::{DAffine3, DMat3, DVec3};
-use std::io;
-use std::ops::Range;
-use std::path::{Path, PathBuf};
+pub use error::{AccessorFault, ImportError, ImportFault, ImportFormat, ImportPlace};
+pub use soup::{SoupGroup, TriangleSoup};
+
+use std::path::Path;
 use weld::Builder;
-
-/// Why a mesh could not be read.
-#[derive(Debug, thiserror::Error)]
-pub enum ImportError {
-    #[error("cannot read {}: {source}", path.display())]
-    File { path: PathBuf, source: io::Error },
-    #[error("`{0}` is no mesh format that is read; stl, obj, ply, glb, gltf and 3mf are")]
-    UnknownFormat(String),
-    /// What is wrong with the file, and where.
-    #[error("this is no valid {format} file: {what}")]
-    Invalid { format: &'static str, what: String },
-}
-
-/// Named triangles of a soup.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SoupGroup {
-    pub name: String,
-    pub triangles: Range<usize>,
-}
-
-/// Triangles as a file holds them, in the file's own unit and axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TriangleSoup {
-    pub positions: Vec<DVec3>,
-    pub triangles: Vec<[u32; 3]>,
-    /// Solids, objects or placed meshes; together they cover all triangles, in order.
-    pub groups: Vec<SoupGroup>,
-    /// Per triangle the index of its exact face, −1 where it has none; empty where the file says nothing of faces.
-    pub face_ids: Vec<i64>,
-    /// The length of the file's unit in millimetres, where the file or its format states it.
-    pub unit_mm: Option<f64>,
-    /// Whether Y points up, not Z.
-    pub y_up: bool,
-}
-
-impl TriangleSoup {
-    /// The same triangles in millimetres (where the unit is known) and with Z up.
-    pub fn into_millimetres_z_up(mut self) -> Self {
-        let scale = self.unit_mm.unwrap_or(1.0);
-        let turn = |p: DVec3| if self.y_up { DVec3::new(p.x, -p.z, p.y) } else { p };
-        self.positions.iter_mut().for_each(|p| *p = turn(*p) * scale);
-        self.unit_mm = self.unit_mm.map(|_| 1.0);
-        self.y_up = false;
-        self
-    }
-}
 
 /// Reads a mesh file; its extension names the format.
 ///
 /// # Errors
-/// Where the file cannot be read, its extension is unknown, or its contents are not what they should be.
+/// If the file cannot be read, its extension is unknown, or its contents are not valid.
 pub fn import_mesh(path: &Path) -> Result<TriangleSoup, ImportError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    if !is_known(&extension) {
-        return Err(ImportError::UnknownFormat(extension));
-    }
+    let format = format_of(&extension)?;
     let bytes = std::fs::read(path).map_err(|source| ImportError::File { path: path.to_owned(), source })?;
-    import_bytes(&bytes, &extension)
-}
-
-fn is_known(extension: &str) -> bool {
-    ["stl", "obj", "ply", "glb", "gltf", "3mf"].contains(&extension)
+    import(&bytes, format)
 }
 
 /// Reads a mesh from memory; `extension` names its format in lower case without a dot.
 ///
+/// ```
+/// let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+/// let soup = chordal_mesh::import_bytes(text, "obj")?;
+/// assert_eq!(soup.triangles, [[0, 1, 2]]);
+/// # Ok::<(), chordal_mesh::ImportError>(())
+/// ```
+///
 /// # Errors
-/// As [`import_mesh`].
+/// If the extension is unknown or the contents are not valid.
 pub fn import_bytes(bytes: &[u8], extension: &str) -> Result<TriangleSoup, ImportError> {
-    let mut builder = Builder::default();
-    let (format, result) = match extension {
-        "stl" => ("STL", stl::read(bytes, &mut builder)),
-        "obj" => ("OBJ", obj::read(bytes, &mut builder)),
-        "ply" => ("PLY", ply::read(bytes, &mut builder)),
-        "glb" => ("GLB", gltf::read_binary(bytes, &mut builder)),
-        "gltf" => ("glTF", gltf::read_text(bytes, &mut builder)),
-        "3mf" => ("3MF", threemf::read(bytes, &mut builder)),
-        _ => return Err(ImportError::UnknownFormat(extension.to_owned())),
-    };
-    result.and_then(|()| builder.finish()).map_err(|what| ImportError::Invalid { format, what })
+    import(bytes, format_of(extension)?)
 }
 
-/// Whether a transform reverses orientation, so that triangles must be reversed with it.
-fn reverses(t: &DAffine3) -> bool {
-    let m: DMat3 = t.matrix3;
-    m.determinant() < 0.0
+fn format_of(extension: &str) -> Result<ImportFormat, ImportError> {
+    ImportFormat::from_extension(extension).ok_or_else(|| ImportError::UnknownFormat(extension.to_owned()))
+}
+
+fn import(bytes: &[u8], format: ImportFormat) -> Result<TriangleSoup, ImportError> {
+    let mut builder = Builder::default();
+    let read = match format {
+        ImportFormat::Stl => stl::read(bytes, &mut builder),
+        ImportFormat::Obj => obj::read(bytes, &mut builder),
+        ImportFormat::Ply => ply::read(bytes, &mut builder),
+        ImportFormat::Glb => gltf::read_binary(bytes, &mut builder),
+        ImportFormat::Gltf => gltf::read_text(bytes, &mut builder),
+        ImportFormat::ThreeMf => threemf::read(bytes, &mut builder),
+    };
+    read.and_then(|()| Ok(builder.finish()?))
+        .map_err(|fault| ImportError::Invalid { format, place: fault.place, fault: fault.kind })
 }

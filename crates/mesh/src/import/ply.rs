@@ -1,6 +1,7 @@
 //! PLY: ASCII or binary in either byte order; any scalar type for coordinates and indices; polygons become fans.
 
 use super::bytes::{Cursor, number, text, words};
+use super::error::{Fault, ImportFault, ImportPlace};
 use super::weld::Builder;
 use glam::DVec3;
 use std::ops::Range;
@@ -89,16 +90,16 @@ struct Header {
     parts: Vec<Part>,
 }
 
-pub(super) fn read(bytes: &[u8], builder: &mut Builder) -> Result<(), String> {
+pub(super) fn read(bytes: &[u8], builder: &mut Builder) -> Result<(), Fault> {
     let mut cursor = Cursor { rest: bytes };
     let header = read_header(&mut cursor, builder)?;
-    let mut values = Values { cursor, encoding: header.encoding };
+    let mut values = Values { cursor, encoding: header.encoding, length: bytes.len() };
     let mut points = Vec::new();
     for element in &header.elements {
         // One byte is forgiven: ASCII files may end without a line's end.
         if element.least_size(header.encoding) > values.cursor.rest.len() as u64 + 1 {
-            let name = text(&element.name);
-            return Err(format!("its header promises {} of `{name}` but it ends before", element.count));
+            let what = format!("items of `{}`", text(&element.name));
+            return Err(ImportFault::Count { what, stated: element.count, held: None }.into());
         }
         match element.name.as_slice() {
             b"vertex" => points = read_points(&mut values, element)?,
@@ -109,15 +110,15 @@ pub(super) fn read(bytes: &[u8], builder: &mut Builder) -> Result<(), String> {
     Ok(())
 }
 
-fn read_header(cursor: &mut Cursor<'_>, builder: &mut Builder) -> Result<Header, String> {
+fn read_header(cursor: &mut Cursor<'_>, builder: &mut Builder) -> Result<Header, Fault> {
     if cursor.line() != Some(b"ply") {
-        return Err("it does not start with `ply`".to_owned());
+        return Err(ImportFault::Start { expected: "ply" }.into());
     }
     let mut header = Header { encoding: Encoding::Ascii, elements: Vec::new(), parts: Vec::new() };
-    loop {
-        let line = cursor.line().ok_or("its header has no end")?;
+    for number in 2.. {
+        let line = cursor.line().ok_or(ImportFault::EndsInside { what: "header" })?;
         let words: Vec<_> = words(line).collect();
-        let error = || format!("the header line `{}` makes no sense", text(line));
+        let error = || Fault::from(ImportFault::HeaderLine { text: text(line) }).at(ImportPlace::Line(number));
         match words.as_slice() {
             [b"format", b"ascii", ..] => header.encoding = Encoding::Ascii,
             [b"format", b"binary_little_endian", ..] => header.encoding = Encoding::Little,
@@ -136,6 +137,7 @@ fn read_header(cursor: &mut Cursor<'_>, builder: &mut Builder) -> Result<Header,
             _ => return Err(error()),
         }
     }
+    Err(ImportFault::EndsInside { what: "header" }.into())
 }
 
 fn property(words: &[&[u8]]) -> Option<Property> {
@@ -181,15 +183,22 @@ pub(super) fn unit_mm(symbol: &[u8]) -> Option<f64> {
 struct Values<'a> {
     cursor: Cursor<'a>,
     encoding: Encoding,
+    /// Bytes of the whole file.
+    length: usize,
 }
 
 impl Values<'_> {
-    fn next(&mut self, scalar: Scalar) -> Result<f64, String> {
+    /// A fault at the next byte to be read.
+    fn fault(&self, kind: ImportFault) -> Fault {
+        Fault::from(kind).at(ImportPlace::Byte(self.length - self.cursor.rest.len()))
+    }
+
+    fn next(&mut self, scalar: Scalar) -> Result<f64, Fault> {
         let value = match self.encoding {
             Encoding::Ascii => self.word().and_then(number),
             encoding => self.binary(scalar, encoding == Encoding::Big),
         };
-        value.ok_or_else(|| "it ends inside an element".to_owned())
+        value.ok_or_else(|| self.fault(ImportFault::EndsInside { what: "elements" }))
     }
 
     fn word(&mut self) -> Option<&[u8]> {
@@ -222,14 +231,14 @@ impl Values<'_> {
     }
 
     /// A property's value or values, into a buffer that is used again.
-    fn property(&mut self, property: &Property, values: &mut Vec<f64>) -> Result<(), String> {
+    fn property(&mut self, property: &Property, values: &mut Vec<f64>) -> Result<(), Fault> {
         values.clear();
         let count = match property.list {
             Some(count) => self.next(count)?,
             None => 1.0,
         };
         if !(0.0..=u32::MAX.into()).contains(&count) {
-            return Err(format!("a list has {count} items"));
+            return Err(self.fault(ImportFault::ListLength { length: count }));
         }
         for _ in 0..count as u64 {
             values.push(self.next(property.scalar)?);
@@ -238,11 +247,11 @@ impl Values<'_> {
     }
 }
 
-fn read_points(values: &mut Values<'_>, element: &Element) -> Result<Vec<DVec3>, String> {
+fn read_points(values: &mut Values<'_>, element: &Element) -> Result<Vec<DVec3>, Fault> {
     let axis = |p: &Property| [b"x", b"y", b"z"].iter().position(|a| a.as_slice() == p.name);
     let axes: Vec<_> = element.properties.iter().map(axis).collect();
     if (0..3).any(|a| !axes.contains(&Some(a))) {
-        return Err("its vertices lack x, y or z".to_owned());
+        return Err(ImportFault::Missing { what: "x, y or z of the vertices" }.into());
     }
     let mut points = Vec::with_capacity(element.count as usize);
     let mut value = Vec::new();
@@ -265,10 +274,11 @@ fn read_faces(
     points: &[DVec3],
     parts: &[Part],
     builder: &mut Builder,
-) -> Result<(), String> {
+) -> Result<(), Fault> {
     let is = |name: &[u8]| element.properties.iter().position(|p| p.name == name);
-    let indices =
-        is(b"vertex_indices").or(is(b"vertex_index")).ok_or("its faces have no `vertex_indices`")?;
+    let indices = is(b"vertex_indices")
+        .or(is(b"vertex_index"))
+        .ok_or(ImportFault::Missing { what: "vertex_indices of the faces" })?;
     let face_id = is(b"face_id");
     let mut parts = parts.iter().peekable();
     let (mut value, mut corners) = (Vec::new(), Vec::new());
@@ -283,8 +293,11 @@ fn read_faces(
                 corners.clear();
                 for &i in &value {
                     let point = usize::try_from(i as i64).ok().and_then(|i| points.get(i));
-                    let point = point.ok_or_else(|| format!("face {triangle} refers to vertex {i}"))?;
-                    corners.push(builder.point(*point)?);
+                    let point = point.ok_or_else(|| {
+                        let vertex = i.to_string();
+                        values.fault(ImportFault::UnknownVertex { vertex, vertices: points.len() })
+                    })?;
+                    corners.push(builder.point(*point).map_err(|fault| values.fault(fault))?);
                 }
             } else if Some(index) == face_id {
                 face = value.first().map(|&id| id as i64);
@@ -301,7 +314,7 @@ fn read_faces(
     Ok(())
 }
 
-fn skip(values: &mut Values<'_>, element: &Element) -> Result<(), String> {
+fn skip(values: &mut Values<'_>, element: &Element) -> Result<(), Fault> {
     if element.properties.is_empty() {
         return Ok(());
     }

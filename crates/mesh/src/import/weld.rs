@@ -1,7 +1,8 @@
-//! Gathers a soup, welding points whose coordinates agree in every bit.
+//! Builds a soup, welding points whose coordinates agree in every bit.
 
-use super::{SoupGroup, TriangleSoup};
-use glam::DVec3;
+use super::error::ImportFault;
+use super::soup::{SoupGroup, TriangleSoup};
+use glam::{DAffine3, DVec3};
 use rustc_hash::FxHashMap;
 
 #[derive(Debug, Default)]
@@ -37,17 +38,16 @@ impl Builder {
     }
 
     /// The index of a point.
-    pub fn point(&mut self, p: DVec3) -> Result<u32, String> {
+    pub fn point(&mut self, p: DVec3) -> Result<u32, ImportFault> {
         if !p.is_finite() {
-            return Err(format!("a vertex is at ({}, {}, {})", p.x, p.y, p.z));
+            return Err(ImportFault::NotFinite { point: p.to_array() });
         }
         if self.groups.is_empty() {
             self.group("");
         }
         // Adding zero turns −0 into 0, which is the same place.
         let bits = (p + DVec3::ZERO).to_array().map(f64::to_bits);
-        let next =
-            u32::try_from(self.positions.len()).map_err(|_| "it has over 4 billion vertices".to_owned())?;
+        let next = u32::try_from(self.positions.len()).map_err(|_| ImportFault::TooManyVertices)?;
         let index = *self.known.entry(bits).or_insert(next);
         if index == next {
             self.positions.push(p + DVec3::ZERO);
@@ -66,10 +66,10 @@ impl Builder {
         self.face_ids.push(face);
     }
 
-    pub fn finish(mut self) -> Result<TriangleSoup, String> {
+    pub fn finish(mut self) -> Result<TriangleSoup, ImportFault> {
         self.close();
         if self.triangles.is_empty() {
-            return Err("it has no triangle".to_owned());
+            return Err(ImportFault::NoTriangles);
         }
         if !self.face_ids.is_empty() {
             self.face_ids.resize(self.triangles.len(), -1);
@@ -83,4 +83,9 @@ impl Builder {
             y_up: self.y_up,
         })
     }
+}
+
+/// Whether a transform reverses orientation, so that triangles must be reversed with it.
+pub(super) fn reverses(t: &DAffine3) -> bool {
+    t.matrix3.determinant() < 0.0
 }

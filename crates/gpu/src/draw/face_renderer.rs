@@ -1,17 +1,20 @@
 //! Exact faces: the pipelines that evaluate and draw them.
 
-use super::Trim;
 use super::blocks::BlockIndices;
+use super::options::Trim;
 use super::pipelines::pipeline;
 use super::trim_texture::TrimTextures;
-use crate::{Evaluator, Gpu, GpuError, Search, Variant, shaders};
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::evaluate::{KernelRunner, Search, Variant};
+use crate::shaders;
 use wgpu::RenderPipeline;
 
 /// The pipelines of exact pictures.
 #[derive(Debug)]
-pub struct ExactRenderer {
+pub struct FaceRenderer {
     /// The fastest that was measured, and the one for surfaces whose Bézier nets exceed a binding.
-    evaluators: [Evaluator<f32>; 2],
+    evaluators: [KernelRunner<f32>; 2],
     exact: RenderPipeline,
     textured: RenderPipeline,
     pub(crate) borders: RenderPipeline,
@@ -19,18 +22,18 @@ pub struct ExactRenderer {
     pub(crate) indices: BlockIndices,
 }
 
-impl ExactRenderer {
+impl FaceRenderer {
     /// Compiles the kernels and shaders.
     ///
     /// # Errors
     /// What [`Gpu::watched`] gives.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let evaluators = [
-            Evaluator::new(gpu, Variant::Bernstein, Search::Host)?,
-            Evaluator::new(gpu, Variant::Direct, Search::Host)?,
+            KernelRunner::new(gpu, Variant::Bernstein, Search::Host)?,
+            KernelRunner::new(gpu, Variant::Direct, Search::Host)?,
         ];
         gpu.watched("compiling shaders", || {
-            let of = |entries| pipeline(gpu, shaders::EXACT, entries, &[]);
+            let of = |entries| pipeline(gpu, shaders::FACE, entries, &[]);
             Ok(Self {
                 evaluators,
                 exact: of(["vertex", "fragment"]),
@@ -50,7 +53,7 @@ impl ExactRenderer {
     }
 
     /// For sets with Bézier nets or without.
-    pub(crate) fn evaluator(&self, has_bezier: bool) -> &Evaluator<f32> {
+    pub(crate) fn evaluator(&self, has_bezier: bool) -> &KernelRunner<f32> {
         &self.evaluators[usize::from(!has_bezier)]
     }
 }

@@ -7,7 +7,7 @@
 //! A map of square cells over the unit square comes first: cells that no loop enters are known to be inside or outside as a
 //! whole. Only points in the others, a few in a hundred, ask for pieces.
 
-use super::Cubic;
+use super::pieces::Cubic;
 
 /// The pieces of all faces.
 #[derive(Clone, Debug, Default)]

@@ -3,7 +3,8 @@
 use crate::host;
 use crate::time::seconds;
 use chordal_gpu::{
-    Evaluator, Gpu, GpuError, OnDevice, Request, Samples, Search, SurfaceSet, Variant, Wanted, sorted_by_span,
+    Gpu, GpuError, KernelRunner, OnDevice, Request, Samples, Search, SurfaceSet, Variant, Wanted,
+    sorted_by_span,
 };
 use chordal_nurbs::{DVec2, DVec3, NurbsCurve3, NurbsSurface};
 use std::time::Instant;
@@ -30,7 +31,7 @@ pub fn rates(
     samples: &Samples<f32>,
     wanted: Wanted,
 ) -> Result<[f64; 2], GpuError> {
-    let evaluator = Evaluator::new(gpu, variant, Search::Host)?;
+    let evaluator = KernelRunner::new(gpu, variant, Search::Host)?;
     let on_device = OnDevice::upload(gpu, set)?;
     let evaluation = evaluator.prepare(gpu, &on_device, set, samples, wanted)?;
     let resident = seconds(|| {
@@ -173,7 +174,7 @@ pub fn mesher(gpu: &Gpu) -> Result<(), GpuError> {
         return Ok(());
     }
     let surface = surface(1, PAPER);
-    let evaluator = Evaluator::<f64>::new(gpu, Variant::Bernstein, Search::Host)?;
+    let evaluator = KernelRunner::<f64>::new(gpu, Variant::Bernstein, Search::Host)?;
     println!(
         "Point, first and second derivatives in f64 at scattered places of one surface, uploaded and read back,"
     );

@@ -4,7 +4,10 @@
 //! among them. Between two samples of an edge the loop is not the chord but a cubic with the directions that the edge's
 //! curve has there, carried into the parameters; its distance from the true curve falls with the fourth power of theirs.
 
-use super::{Cone, Cubic, EdgeParameters, normal_cone, outside_faces};
+use super::cone::{Cone, normal_cone};
+use super::edges::EdgeParameters;
+use super::outside::outside_faces;
+use super::pieces::Cubic;
 use chordal_brep::{FaceGeometry, Model};
 use chordal_mesh::{FaceMesh, Rgba, Scene};
 use chordal_nurbs::{DVec2, DVec3, NurbsParameters, NurbsSurface, Surface, UvBox};
@@ -13,7 +16,7 @@ use std::sync::Arc;
 
 /// One face that the GPU can evaluate.
 #[derive(Clone, Debug)]
-pub struct ExactFace {
+pub struct TrimmedFace {
     /// The face's index in its part.
     pub face: usize,
     pub surface: NurbsSurface,
@@ -41,7 +44,7 @@ pub struct ExactFace {
 }
 
 #[cfg(test)]
-impl ExactFace {
+impl TrimmedFace {
     /// An untrimmed face over the whole of a surface.
     pub(crate) fn whole(surface: NurbsSurface) -> Self {
         let uv = surface.domain();
@@ -50,7 +53,7 @@ impl ExactFace {
     }
 }
 
-impl ExactFace {
+impl TrimmedFace {
     /// Takes another surface of the same shape of knots over the same parameters: how fine it must be sampled follows; its
     /// back may be seen from now on.
     pub(crate) fn replace_surface(&mut self, surface: &NurbsSurface) {
@@ -78,23 +81,23 @@ impl ExactFace {
 
 /// A part's exact faces, and those that have no exact NURBS form and stay meshed.
 #[derive(Clone, Debug, Default)]
-pub struct ExactPart {
-    pub faces: Vec<ExactFace>,
+pub struct TrimmedPart {
+    pub faces: Vec<TrimmedFace>,
     pub meshed: Vec<usize>,
 }
 
 /// A model's parts, in its order.
 #[derive(Clone, Debug, Default)]
-pub struct ExactModel {
-    pub parts: Vec<ExactPart>,
+pub struct TrimmedModel {
+    pub parts: Vec<TrimmedPart>,
 }
 
 /// Exact faces of everything that was meshed.
-pub fn exact_model(scene: &Scene, model: &Model) -> ExactModel {
+pub fn trimmed_model(scene: &Scene, model: &Model) -> TrimmedModel {
     let parts = scene.parts.iter().zip(&model.parts).map(|(scene_part, part)| {
         let mesh = &scene_part.mesh;
         let edges = EdgeParameters::new(part, mesh);
-        let mut found = ExactPart::default();
+        let mut found = TrimmedPart::default();
         let outside = outside_faces(mesh);
         for (index, (face, of_face)) in part.faces.iter().zip(&mesh.faces).enumerate() {
             if of_face.triangles.is_empty() {
@@ -105,7 +108,7 @@ pub fn exact_model(scene: &Scene, model: &Model) -> ExactModel {
                 FaceGeometry::Failed(_) => None,
             };
             match exact {
-                Some(exact) => found.faces.push(ExactFace {
+                Some(exact) => found.faces.push(TrimmedFace {
                     face: index,
                     outward: outside[index].and_then(|area| Some(normal_cone(&exact.surface)?.towards(area))),
                     reversed: face.normal_reversed(),
@@ -117,25 +120,25 @@ pub fn exact_model(scene: &Scene, model: &Model) -> ExactModel {
         }
         found
     });
-    ExactModel { parts: parts.collect() }
+    TrimmedModel { parts: parts.collect() }
 }
 
-fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters) -> Option<ExactFace> {
+fn exact_face(surface: &Arc<Surface>, of_face: &FaceMesh, edges: &EdgeParameters) -> Option<TrimmedFace> {
     let uv = UvBox::from_points(of_face.corners.iter().map(|c| c.uv));
     if !(uv.size().min_element() > 0.0) || !uv.is_finite() {
         return None;
     }
-    let face = ExactFace { loops: loops(surface, of_face, edges, uv), ..untrimmed(surface, uv)? };
+    let face = TrimmedFace { loops: loops(surface, of_face, edges, uv), ..untrimmed(surface, uv)? };
     Some(face.with_border())
 }
 
 /// The face that fills the box.
-fn untrimmed(surface: &Surface, uv: UvBox) -> Option<ExactFace> {
+fn untrimmed(surface: &Surface, uv: UvBox) -> Option<TrimmedFace> {
     let nurbs = surface.to_nurbs(uv).ok()?;
     let parameters = surface.nurbs_parameters(uv).ok()?;
     let [kinks_u, kinks_v] = surface.breaks(uv);
     let (bends, stretch) = bends(surface, uv, [&kinks_u, &kinks_v]);
-    let face = ExactFace {
+    let face = TrimmedFace {
         face: 0,
         bounds: bounds(&nurbs),
         surface: nurbs,

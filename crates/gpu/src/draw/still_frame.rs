@@ -1,18 +1,18 @@
 //! Frames that show all of a model and need nothing but what the frame before them drew: no face is looked at.
 
-use super::FrameCounts;
+use super::frame_counts::FrameCounts;
 use super::visible::{Level, Visible};
 use std::ops::Range;
 
 /// What a frame showed, where it showed all faces of all levels.
 #[derive(Debug)]
-pub(crate) struct Calm {
-    levels: Vec<CalmLevel>,
+pub(crate) struct StillFrame {
+    levels: Vec<StillLevel>,
     counts: FrameCounts,
 }
 
 #[derive(Debug)]
-struct CalmLevel {
+struct StillLevel {
     shape: usize,
     class: i32,
     placed: Range<u32>,
@@ -20,7 +20,7 @@ struct CalmLevel {
     served: [f64; 2],
 }
 
-impl Calm {
+impl StillFrame {
     /// Of a frame; `served` says of a level between which errors the samples of each face serve, if all faces have samples.
     pub fn of(
         visible: &Visible,
@@ -34,7 +34,7 @@ impl Calm {
         for level in &visible.levels {
             let of_faces = served(level).filter(|_| level.whole)?;
             let both = |a: [f64; 2], b: &[f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
-            levels.push(CalmLevel {
+            levels.push(StillLevel {
                 shape: level.shape,
                 class: level.class,
                 placed: level.placed.clone(),
@@ -47,7 +47,7 @@ impl Calm {
     /// The counts of a frame that needs nothing else; `closed` says which parts may have faces that are left out for showing
     /// their backs.
     pub fn counts(&self, visible: &Visible, leave_out_backs: bool, closed: &[bool]) -> Option<FrameCounts> {
-        let same = |(was, is): (&CalmLevel, &Level)| {
+        let same = |(was, is): (&StillLevel, &Level)| {
             (was.shape, was.class, &was.placed) == (is.shape, is.class, &is.placed)
                 && is.whole
                 && !(leave_out_backs && closed[is.shape])

@@ -1,7 +1,9 @@
 //! One core of the host against what binds it.
 
 use crate::evaluation::{PAPER, surface};
-use chordal_gpu::{GpuError, HostSurface, SurfaceSet, host_peaks};
+use crate::host_grid::HostSurface;
+use crate::host_peaks::host_peaks;
+use chordal_gpu::{GpuError, SurfaceSet};
 use std::time::Instant;
 
 /// Runs of which the best counts.

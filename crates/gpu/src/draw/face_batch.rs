@@ -1,18 +1,23 @@
 //! What one re-evaluation leaves on the device: points, the trim texture, and how the faces in them are drawn.
 //!
-//! Nothing of a generation changes but by an edit of its surfaces; faces that a later view needs otherwise go into a later one.
+//! Nothing of a batch changes but by an edit of its surfaces; faces that a later view needs otherwise go into a later one.
 
 use super::blocks::{Blocks, Cells};
 use super::choice::Choice;
-use super::exact::ExactRenderer;
+use super::device_store::{FaceLocation, FaceStore};
+use super::face_renderer::FaceRenderer;
 use super::mesh_shapes::{DEFAULT_COLOR, local, opacity};
+use super::options::Trim;
 use super::pipelines::{bind_group, bind_resources};
-use super::residents::{Home, Resident};
+use super::srgb::linear;
 use super::trim_texture::{TrimTexture, Trimmed};
-use super::{Trim, linear};
+use crate::device::Gpu;
+use crate::error::GpuError;
 use crate::evaluate::storage;
-use crate::exact::{ExactFace, grid};
-use crate::{Evaluation, Gpu, GpuError, Request, Samples, SurfaceEntry, Wanted};
+use crate::evaluate::{Evaluation, Wanted};
+use crate::faces::{TrimmedFace, grid};
+use crate::samples::{Request, Samples};
+use crate::surfaces::SurfaceEntry;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -47,8 +52,8 @@ pub(crate) struct FaceData {
 
 /// A face to be evaluated, and where.
 pub(crate) struct Member<'a> {
-    pub face: &'a ExactFace,
-    pub home: Home,
+    pub face: &'a TrimmedFace,
+    pub location: FaceLocation,
     /// What the part's coordinates are relative to on the device.
     middle: DVec3,
     texels: [f64; 2],
@@ -59,11 +64,17 @@ pub(crate) struct Member<'a> {
 
 impl<'a> Member<'a> {
     /// As `choice` says, or as finely as `most` points allow.
-    pub fn new(face: &'a ExactFace, home: Home, middle: DVec3, choice: &Choice, most: usize) -> Self {
+    pub fn new(
+        face: &'a TrimmedFace,
+        location: FaceLocation,
+        middle: DVec3,
+        choice: &Choice,
+        most: usize,
+    ) -> Self {
         let (mut steps, mut error) = (choice.steps, choice.error);
         loop {
             let (grid, border) = (grid(face, steps), face.border(error));
-            let member = Self { face, home, middle, texels: choice.texels, grid, border };
+            let member = Self { face, location, middle, texels: choice.texels, grid, border };
             if member.points() <= most || steps == [1.0; 2] {
                 return member;
             }
@@ -77,15 +88,15 @@ impl<'a> Member<'a> {
     }
 }
 
-/// Points that fit into one binding; a generation has no more, so that no grid is cut.
+/// Points that fit into one binding; a batch has no more, so that no grid is cut.
 pub(crate) fn most_points(gpu: &Gpu) -> usize {
     (gpu.binding_limit() / (Wanted::Normals.stride() * size_of::<f32>()) as u64) as usize
 }
 
-/// The points of some faces of one resident.
+/// The points of some faces of one store.
 #[derive(Debug)]
-pub(crate) struct Generation {
-    pub resident: usize,
+pub(crate) struct FaceBatch {
+    pub store: usize,
     evaluation: Evaluation<f32>,
     faces: Buffer,
     #[cfg(test)]
@@ -100,22 +111,21 @@ pub(crate) struct Generation {
     pub points: usize,
 }
 
-impl Generation {
-    /// Evaluates faces, all of one resident and no more than [`most_points`] of them, for pictures trimmed in one way.
+impl FaceBatch {
+    /// Evaluates faces, all of one store and no more than [`most_points`] of them, for pictures trimmed in one way.
     pub fn new(
         gpu: &Gpu,
-        renderer: &ExactRenderer,
-        resident: &Resident,
+        renderer: &FaceRenderer,
+        store: &FaceStore,
         members: &[Member],
         trim: Trim,
         stage: [&Buffer; 2],
     ) -> Result<Self, GpuError> {
         let mut plan = Plan::default();
-        members.iter().for_each(|member| plan.push(resident, member));
-        let samples = Samples::new(&resident.set, &plan.requests)?;
-        let evaluator = renderer.evaluator(resident.set.has_bezier());
-        let evaluation =
-            evaluator.prepare(gpu, &resident.on_device, &resident.set, &samples, Wanted::Normals)?;
+        members.iter().for_each(|member| plan.push(store, member));
+        let samples = Samples::new(&store.set, &plan.requests)?;
+        let evaluator = renderer.evaluator(store.set.has_bezier());
+        let evaluation = evaluator.prepare(gpu, &store.on_device, &store.set, &samples, Wanted::Normals)?;
         evaluator.run(gpu, &evaluation)?;
         let mut buffers = evaluation.buffers();
         let (Some((points, _)), None) = (buffers.next(), buffers.next()) else {
@@ -129,17 +139,18 @@ impl Generation {
         let cells = plan.place(&samples);
         let texture = match trim {
             Trim::Exact => None,
-            Trim::Texture => Some(plan.draw_trims(gpu, renderer, resident, members)?),
+            Trim::Texture => Some(plan.draw_trims(gpu, renderer, store, members)?),
         };
         let faces = storage(gpu, "the faces", &plan.faces)?;
         let places = storage(gpu, "the parameters of all grids", &plan.places)?;
         let common = [(0, stage[0]), (1, stage[1]), (2, &faces), (3, points)];
         let mut trimmed: Vec<_> = common.iter().map(|(k, b)| (*k, b.as_entire_binding())).collect();
         trimmed.push((4, places.as_entire_binding()));
-        trimmed.push((9, resident.on_device.bezier.as_entire_binding()));
+        trimmed.push((9, store.on_device.bezier.as_entire_binding()));
         match &texture {
-            None => trimmed
-                .extend([(5, resident.pieces.as_entire_binding()), (6, resident.lists.as_entire_binding())]),
+            None => {
+                trimmed.extend([(5, store.pieces.as_entire_binding()), (6, store.lists.as_entire_binding())])
+            }
             Some(texture) => trimmed.extend([
                 (7, BindingResource::TextureView(&texture.view)),
                 (8, BindingResource::Sampler(&renderer.textures.sampler)),
@@ -150,9 +161,9 @@ impl Generation {
             bind_group(gpu, &renderer.borders, &common),
         ];
         drop(buffers);
-        let (live, points, resident) = (members.len(), samples.len(), members[0].home.resident);
+        let (live, points, store) = (members.len(), samples.len(), members[0].location.store);
         Ok(Self {
-            resident,
+            store,
             evaluation,
             faces,
             #[cfg(test)]
@@ -174,7 +185,7 @@ impl Generation {
     pub fn blocks(
         &self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
+        renderer: &FaceRenderer,
         trim: Trim,
         drawn: &[(usize, Range<u32>)],
     ) -> Result<Blocks, GpuError> {
@@ -187,11 +198,11 @@ impl Generation {
         &self,
         gpu: &Gpu,
         pipeline: &wgpu::RenderPipeline,
-        resident: &Resident,
+        store: &FaceStore,
         stage: [&Buffer; 2],
     ) -> BindGroup {
-        let (points, _) = self.evaluation.buffers().next().expect("a generation is one batch");
-        let net = &resident.on_device.bezier;
+        let (points, _) = self.evaluation.buffers().next().expect("a batch is one batch");
+        let net = &store.on_device.bezier;
         let buffers =
             [(0, stage[0]), (1, stage[1]), (2, &self.faces), (3, points), (4, &self.places), (9, net)];
         bind_group(gpu, pipeline, &buffers)
@@ -213,27 +224,27 @@ impl Generation {
     pub fn again(
         &mut self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
-        resident: &Resident,
-        members: impl Iterator<Item = (usize, Home, DVec3)>,
+        renderer: &FaceRenderer,
+        store: &FaceStore,
+        members: impl Iterator<Item = (usize, FaceLocation, DVec3)>,
     ) -> Result<(), GpuError> {
-        for (index, home, middle) in members {
-            let frame = resident.set.entries()[home.surface].frame;
+        for (index, location, middle) in members {
+            let frame = store.set.entries()[location.surface].frame;
             let data = &mut self.data[index];
             (data.offset, data.size) = (local(frame.middle, middle), frame.size as f32);
         }
         gpu.queue.write_buffer(&self.faces, 0, bytemuck::cast_slice(&self.data));
-        renderer.evaluator(resident.set.has_bezier()).run(gpu, &self.evaluation)
+        renderer.evaluator(store.set.has_bezier()).run(gpu, &self.evaluation)
     }
 
     /// Draws faces.
-    pub fn draw_faces(&self, pass: &mut RenderPass, renderer: &ExactRenderer, blocks: &Blocks) {
+    pub fn draw_faces(&self, pass: &mut RenderPass, renderer: &FaceRenderer, blocks: &Blocks) {
         pass.set_bind_group(0, &self.groups[0], &[]);
         blocks.draw_faces(pass, &renderer.indices);
     }
 
     /// Draws the strips along their borders.
-    pub fn draw_borders(&self, pass: &mut RenderPass, renderer: &ExactRenderer, blocks: &Blocks) {
+    pub fn draw_borders(&self, pass: &mut RenderPass, renderer: &FaceRenderer, blocks: &Blocks) {
         pass.set_bind_group(0, &self.groups[1], &[]);
         blocks.draw_borders(pass, &renderer.indices);
     }
@@ -248,9 +259,9 @@ struct Plan {
 }
 
 impl Plan {
-    fn push(&mut self, resident: &Resident, member: &Member) {
-        let (face, home) = (member.face, member.home);
-        let entry = &resident.set.entries()[home.surface];
+    fn push(&mut self, store: &FaceStore, member: &Member) {
+        let (face, location) = (member.face, member.location);
+        let entry = &store.set.entries()[location.surface];
         let frame = entry.frame;
         let [us, vs] = &member.grid;
         let map = &face.parameters;
@@ -267,7 +278,7 @@ impl Plan {
             self.places
                 .extend(both.map(|(t, n)| [(t - start) / length, (n - first) / over].map(|x| x as f32)));
         }
-        let nets = self.push_spans(resident.set.has_bezier(), entry, [low, high]);
+        let nets = self.push_spans(store.set.has_bezier(), entry, [low, high]);
         let color = face.color.map_or_else(
             || DEFAULT_COLOR.map(|c| linear(f64::from(c) / 255.0) as f32),
             |c| [c[0], c[1], c[2], opacity(c)],
@@ -279,12 +290,12 @@ impl Plan {
             height: vs.len() as u32,
             row_u,
             row_v,
-            lists: home.trim.at,
-            bands: home.trim.bands,
+            lists: location.trim.at,
+            bands: location.trim.bands,
             turn: if face.reversed { -1.0 } else { 1.0 },
             ..nets
         });
-        let (surface, [us, vs]) = (home.surface, nurbs);
+        let (surface, [us, vs]) = (location.surface, nurbs);
         self.requests.push(Request::Grid { surface, us, vs });
         let border = member.border.iter().map(|p| map.nurbs_from_native(*p)).collect();
         self.requests.push(Request::Points { surface, uvs: border });
@@ -331,19 +342,19 @@ impl Plan {
     fn draw_trims(
         &mut self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
-        resident: &Resident,
+        renderer: &FaceRenderer,
+        store: &FaceStore,
         members: &[Member],
     ) -> Result<TrimTexture, GpuError> {
         let trimmed: Vec<usize> = (0..members.len()).filter(|k| !members[*k].face.loops.is_empty()).collect();
         let wishes: Vec<Trimmed> = trimmed
             .iter()
             .map(|&k| {
-                let Member { face, home, texels, .. } = &members[k];
-                Trimmed { texels: *texels, loops: &face.loops, first: home.cubics }
+                let Member { face, location, texels, .. } = &members[k];
+                Trimmed { texels: *texels, loops: &face.loops, first: location.cubics }
             })
             .collect();
-        let texture = renderer.textures.draw(gpu, &wishes, &resident.cubics)?;
+        let texture = renderer.textures.draw(gpu, &wishes, &store.cubics)?;
         for (&k, slot) in trimmed.iter().zip(&texture.slots) {
             let face = &mut self.faces[k];
             face.rectangle = slot.rectangle(texture.page);

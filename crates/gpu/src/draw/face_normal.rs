@@ -1,6 +1,6 @@
-//! Twin of `exact_normal.wgsl`, for the tests: drawing shaders have no double precision of their own.
+//! Twin of `face_normal.wgsl`, for the tests: drawing shaders have no double precision of their own.
 
-use super::generation::FaceData;
+use super::face_batch::FaceData;
 use crate::kernels::bezier::{Cell, tangents_at};
 use crate::kernels::normal::unit_normal;
 use glam::Vec3;
@@ -17,7 +17,7 @@ fn place_of(places: &[[f32; 2]], first: u32, count: u32, at: f32) -> (u32, f32) 
 }
 
 /// At a place of the face's square by its NURBS parameters; zero where there is none.
-pub(crate) fn exact_normal(face: &FaceData, places: &[[f32; 2]], net: &[[f32; 4]], spot: [f32; 2]) -> Vec3 {
+pub(crate) fn face_normal(face: &FaceData, places: &[[f32; 2]], net: &[[f32; 4]], spot: [f32; 2]) -> Vec3 {
     let [p, q] = [face.degrees & 0xff, face.degrees >> 8];
     let [(u, t_u), (v, t_v)] =
         [0, 1].map(|axis| place_of(places, face.spans[axis], face.counts[axis], spot[axis]));

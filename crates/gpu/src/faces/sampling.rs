@@ -4,14 +4,14 @@
 //! (h² |S_uu| + 2 h k |S_uv| + k² |S_vv|) / 8. Each direction gets half of what is allowed, after the mixed term has
 //! been shared between the squares: 2 h k m ≤ m (r h² + k²/r) with r the ratio of the two.
 
-use super::ExactFace;
+use super::model::TrimmedFace;
 
 /// Points of one face at most; a view that asks for more sees the difference only where the face fills it many times.
 const MOST: f64 = 2048.0;
 const MOST_POINTS: f64 = 400_000.0;
 
 /// What the steps along u and v are proportional to, the error's root being the divisor.
-fn proportions(face: &ExactFace) -> [f64; 2] {
+fn proportions(face: &TrimmedFace) -> [f64; 2] {
     let [uu, uv, vv] = face.bends;
     let ratio = if uu > 0.0 && vv > 0.0 { (uu / vv).sqrt() } else { 1.0 };
     let size = face.uv.size();
@@ -19,7 +19,7 @@ fn proportions(face: &ExactFace) -> [f64; 2] {
 }
 
 /// Steps along u and v for an error in the part's units, before kinks are added.
-pub(crate) fn steps(face: &ExactFace, error: f64) -> [f64; 2] {
+pub(crate) fn steps(face: &TrimmedFace, error: f64) -> [f64; 2] {
     let mut steps = proportions(face).map(|x| (x / error.sqrt()).ceil().clamp(1.0, MOST));
     while steps[0] * steps[1] > MOST_POINTS {
         let larger = usize::from(steps[1] > steps[0]);
@@ -29,7 +29,7 @@ pub(crate) fn steps(face: &ExactFace, error: f64) -> [f64; 2] {
 }
 
 /// The smallest and the largest error that so many steps serve, being at most twice what is needed.
-pub(crate) fn errors_served(face: &ExactFace, steps: [f64; 2]) -> [f64; 2] {
+pub(crate) fn errors_served(face: &TrimmedFace, steps: [f64; 2]) -> [f64; 2] {
     if 4.0 * steps[0] * steps[1] > MOST_POINTS || steps.iter().any(|s| *s >= MOST) {
         // What the limits have cut is asked for each time.
         return [f64::INFINITY, 0.0];
@@ -44,7 +44,7 @@ pub(crate) fn errors_served(face: &ExactFace, steps: [f64; 2]) -> [f64; 2] {
 
 /// The face's parameters along u and v, native, in so many steps. Knot lines across which the surface has a kink are among
 /// them.
-pub(crate) fn grid(face: &ExactFace, steps: [f64; 2]) -> [Vec<f64>; 2] {
+pub(crate) fn grid(face: &TrimmedFace, steps: [f64; 2]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| spread(face.uv.min[axis], face.uv.max[axis], &face.kinks[axis], steps[axis]))
 }
 

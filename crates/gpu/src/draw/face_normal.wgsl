@@ -25,7 +25,7 @@ fn place_of(first: u32, count: u32, at: f32) -> Place {
 }
 
 // At a place of the face's square by its NURBS parameters; 0 where there is none.
-fn exact_normal(face: u32, spot: vec2<f32>) -> vec3<f32> {
+fn face_normal(face: u32, spot: vec2<f32>) -> vec3<f32> {
     let p = faces[face].degrees & 0xffu;
     let q = faces[face].degrees >> 8u;
     let u = place_of(faces[face].spans_u, faces[face].count_u, spot.x);

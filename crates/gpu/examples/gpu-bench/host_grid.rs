@@ -14,7 +14,7 @@
 //! Rows are handed out one after the other, so that they need never leave the cache. Not guaranteed: the digits of high
 //! degrees, which the power form loses (2^p units in the worst case, hence [`HIGHEST_DEGREE`]).
 
-use crate::{GpuError, SurfaceSet};
+use chordal_gpu::{GpuError, SurfaceSet};
 use pulp::{Arch, Simd, WithSimd};
 
 /// The highest degree along u that rows are evaluated at.
@@ -34,7 +34,8 @@ enum Form {
 /// A surface made ready for rows.
 #[derive(Clone, Debug)]
 pub struct HostSurface<'a> {
-    directions: &'a [crate::surfaces::DirectionEntry; 2],
+    /// The ends of the spans along u and along v.
+    breaks: [&'a [f64]; 2],
     degree: [usize; 2],
     form: Form,
     /// Per cell, u slowest, and number j along v: p + 1 coefficients of x, of y, of z and of w.
@@ -47,14 +48,14 @@ impl<'a> HostSurface<'a> {
     /// # Errors
     /// [`GpuError::NoSuchSurface`]; [`GpuError::Device`] above [`HIGHEST_DEGREE`] along u or without Bézier nets.
     pub fn new(set: &'a SurfaceSet<f64>, surface: usize) -> Result<Self, GpuError> {
-        let entry = set.entries.get(surface).ok_or(GpuError::NoSuchSurface(surface))?;
+        let entry = set.entries().get(surface).ok_or(GpuError::NoSuchSurface(surface))?;
         let [p, q] = entry.degree;
         if p > HIGHEST_DEGREE || !set.has_bezier() {
             let reason =
                 format!("rows need Bézier nets and a degree of at most {HIGHEST_DEGREE} along u, not {p}");
             return Err(GpuError::Device { doing: "evaluating rows on the host".into(), reason });
         }
-        let beziers = &set.bezier[entry.bezier as usize..(entry.bezier + entry.beziers) as usize];
+        let beziers = set.bezier_points(surface);
         let form = match (entry.weight_ratio == 1.0, beziers.iter().all(|b| b[3] > 0.0)) {
             (true, true) => Form::Polynomial,
             (false, true) => Form::Rational,
@@ -68,19 +69,17 @@ impl<'a> HostSurface<'a> {
                 powers(&mut nets[first..]);
             }
         }
-        Ok(Self { directions: &entry.directions, degree: [p, q], form, nets })
+        Ok(Self { breaks: entry.breaks(), degree: [p, q], form, nets })
     }
 
     /// Evaluates the grid `us` × `vs` and calls `row` with the number of v and the x, y and z of all u, in the surface's local
     /// coordinates. Parameters outside the domain are clamped to it; `us` that ascend are fastest.
     pub fn grid(&self, us: &[f64], vs: &[f64], mut row: impl FnMut(usize, [&[f64]; 3])) {
         let [p, q] = self.degree;
-        let [along_u, along_v] = self.directions;
-        let places: Vec<(u32, f64)> = us.iter().map(|&u| along_u.locate(u)).collect();
-        let runs: Vec<(usize, usize)> = places
-            .chunk_by(|a, b| a.0 == b.0)
-            .map(|run| ((run[0].0 - along_u.span) as usize, run.len()))
-            .collect();
+        let [along_u, along_v] = self.breaks;
+        let places: Vec<(usize, f64)> = us.iter().map(|&u| locate(along_u, u)).collect();
+        let runs: Vec<(usize, usize)> =
+            places.chunk_by(|a, b| a.0 == b.0).map(|run| (run[0].0, run.len())).collect();
         let mut room = vec![0.0; 4 * stagger(us.len()) + LINE];
         let mut arrays = staggered(&mut room, us.len());
         let [ts, ..] = &mut arrays;
@@ -94,11 +93,11 @@ impl<'a> HostSurface<'a> {
         for j in 0..=vs.len() {
             let [ready, next] = &mut coefficients;
             let line = vs.get(j).map(|&v| {
-                let (span_v, t_v) = along_v.locate(v);
+                let (span_v, t_v) = locate(along_v, v);
                 bernstein(t_v, &mut weights);
                 Line {
-                    nets: &self.nets[(span_v - along_v.span) as usize * cell..],
-                    net_stride: (along_v.breaks.len() - 1) * cell,
+                    nets: &self.nets[span_v * cell..],
+                    net_stride: (along_v.len() - 1) * cell,
                     weights: &weights,
                     coefficients: next,
                 }
@@ -111,6 +110,14 @@ impl<'a> HostSurface<'a> {
             coefficients.swap(0, 1);
         }
     }
+}
+
+/// The span of `t` (clamped to the domain) and the place in it, 0..=1.
+fn locate(breaks: &[f64], t: f64) -> (usize, f64) {
+    let count = breaks.len() - 1;
+    let t = t.max(breaks[0]).min(breaks[count]);
+    let span = breaks[1..count].partition_point(|&b| b <= t);
+    (span, ((t - breaks[span]) / (breaks[span + 1] - breaks[span])).clamp(0.0, 1.0))
 }
 
 /// Numbers in a line of the cache, and in a page.

@@ -1,15 +1,19 @@
 //! What of a model stays on the device whatever the view: control points, knots and trimming curves, in as many sets as the
 //! limits of a binding ask for.
 
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::evaluate::OnDevice;
 use crate::evaluate::storage;
-use crate::exact::trim::{TrimRange, TrimTable};
-use crate::{ExactFace, ExactModel, Gpu, GpuError, OnDevice, SurfaceSet};
+use crate::faces::inside::{TrimRange, TrimTable};
+use crate::faces::{TrimmedFace, TrimmedModel};
+use crate::surfaces::SurfaceSet;
 use chordal_nurbs::NurbsSurface;
 use wgpu::Buffer;
 
 /// Some faces on the device.
 #[derive(Debug)]
-pub(crate) struct Resident {
+pub(crate) struct FaceStore {
     pub set: SurfaceSet<f32>,
     pub on_device: OnDevice<f32>,
     /// The rising pieces of the exact test and their bands.
@@ -21,15 +25,15 @@ pub(crate) struct Resident {
 
 /// Where a face is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Home {
-    pub resident: usize,
+pub(crate) struct FaceLocation {
+    pub store: usize,
     pub surface: usize,
     pub trim: TrimRange,
     /// The number of its first piece among the cubics.
     pub cubics: u32,
 }
 
-/// Faces gathered for one resident.
+/// Faces gathered for one store.
 struct Pending {
     set: SurfaceSet<f32>,
     trims: TrimTable,
@@ -43,7 +47,7 @@ impl Pending {
         Self { set, trims: TrimTable::default(), cubics: Vec::new(), bytes: 0 }
     }
 
-    fn push(&mut self, face: &ExactFace, resident: usize, bytes: u64) -> Home {
+    fn push(&mut self, face: &TrimmedFace, store: usize, bytes: u64) -> FaceLocation {
         self.bytes += bytes;
         let cubics = self.cubics.len() as u32 / 2;
         self.cubics.extend(face.loops.iter().flat_map(|piece| piece.as_f32()));
@@ -51,15 +55,15 @@ impl Pending {
             true => TrimRange::default(),
             false => self.trims.push(&face.loops),
         };
-        Home { resident, surface: self.set.push_surface(&face.surface), trim, cubics }
+        FaceLocation { store, surface: self.set.push_surface(&face.surface), trim, cubics }
     }
 
     fn full(&self, more: u64, limit: u64) -> bool {
         !self.set.is_empty() && (self.bytes + more > limit || self.trims.bytes() > limit / 2)
     }
 
-    fn upload(self, gpu: &Gpu) -> Result<Resident, GpuError> {
-        Ok(Resident {
+    fn upload(self, gpu: &Gpu) -> Result<FaceStore, GpuError> {
+        Ok(FaceStore {
             on_device: OnDevice::upload(gpu, &self.set)?,
             set: self.set,
             pieces: storage(gpu, "the trimming curves", &self.trims.pieces)?,
@@ -69,15 +73,15 @@ impl Pending {
     }
 }
 
-/// Uploads the faces of a model: its residents and, part by part, where each face is.
-pub(crate) fn settle(
+/// Uploads the faces of a model: its stores and, part by part, where each face is.
+pub(crate) fn upload_faces(
     gpu: &Gpu,
-    model: &ExactModel,
+    model: &TrimmedModel,
     limit: u64,
-) -> Result<(Vec<Resident>, Vec<Vec<Home>>), GpuError> {
-    let mut residents = Vec::new();
+) -> Result<(Vec<FaceStore>, Vec<Vec<FaceLocation>>), GpuError> {
+    let mut stores = Vec::new();
     let mut pending = Pending::new(true);
-    let mut homes = Vec::new();
+    let mut locations = Vec::new();
     for part in &model.parts {
         let mut of_part = Vec::new();
         for face in &part.faces {
@@ -87,17 +91,17 @@ pub(crate) fn settle(
             if pending.full(bytes, limit) || pending.set.has_bezier() != with_bezier {
                 let full = std::mem::replace(&mut pending, Pending::new(with_bezier));
                 if !full.set.is_empty() {
-                    residents.push(full.upload(gpu)?);
+                    stores.push(full.upload(gpu)?);
                 }
             }
-            of_part.push(pending.push(face, residents.len(), bytes));
+            of_part.push(pending.push(face, stores.len(), bytes));
         }
-        homes.push(of_part);
+        locations.push(of_part);
     }
     if !pending.set.is_empty() {
-        residents.push(pending.upload(gpu)?);
+        stores.push(pending.upload(gpu)?);
     }
-    Ok((residents, homes))
+    Ok((stores, locations))
 }
 
 /// Bytes of the Bézier nets of a surface; its net and knots take no more.

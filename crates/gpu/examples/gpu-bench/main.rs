@@ -5,6 +5,8 @@
 mod evaluation;
 mod frames;
 mod host;
+mod host_grid;
+mod host_peaks;
 mod memory;
 mod scene;
 mod time;

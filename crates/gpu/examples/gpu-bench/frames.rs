@@ -3,8 +3,8 @@
 use crate::scene::Scenario;
 use crate::time::{grouped, seconds};
 use chordal_gpu::{
-    Background, ExactRenderer, ExactScene, Gpu, GpuError, PIXEL_ERROR, RenderOptions, Renderer, Style, View,
-    exact_model,
+    Background, FaceRenderer, FaceScene, Gpu, GpuError, PIXEL_ERROR, RenderOptions, Renderer, Style, View,
+    trimmed_model,
 };
 use chordal_nurbs::{DVec3, NurbsSurface};
 use std::time::Instant;
@@ -31,17 +31,17 @@ pub fn by_surfaces(gpu: &Gpu) -> Result<(), GpuError> {
         "| surfaces | points | first frame, s | frames/s, still | frames/s, moving | evaluated anew a frame |"
     );
     println!("|---|---|---|---|---|---|");
-    let (renderer, exact) = (Renderer::new(gpu)?, ExactRenderer::new(gpu)?);
+    let (renderer, exact) = (Renderer::new(gpu)?, FaceRenderer::new(gpu)?);
     for count in NUMBERS {
         let (model, scene) = Scenario::new(count).model();
-        let mut shown = ExactScene::new(gpu, exact_model(&scene, &model), (&scene, &model), Style::Shaded)?;
+        let mut shown = FaceScene::new(gpu, trimmed_model(&scene, &model), (&scene, &model), Style::Shaded)?;
         let options = options(size);
         let started = Instant::now();
-        let first = renderer.draw_exact(gpu, &exact, &mut shown, &options)?;
+        let first = renderer.draw_faces(gpu, &exact, &mut shown, &options)?;
         gpu.wait()?;
         let slowest = started.elapsed().as_secs_f64();
         let still = seconds(|| {
-            renderer.draw_exact(gpu, &exact, &mut shown, &options)?;
+            renderer.draw_faces(gpu, &exact, &mut shown, &options)?;
             gpu.wait()
         })?;
         // The mean, not the best: frames that evaluate much are among them.
@@ -49,7 +49,7 @@ pub fn by_surfaces(gpu: &Gpu) -> Result<(), GpuError> {
         while frame < 20 && (frame == 0 || began.elapsed().as_secs_f64() < 1.0) {
             frame += 1;
             let nearer = options.with_zoom(1.02_f64.powi(frame));
-            evaluated += renderer.draw_exact(gpu, &exact, &mut shown, &nearer)?.evaluated;
+            evaluated += renderer.draw_faces(gpu, &exact, &mut shown, &nearer)?.evaluated;
             gpu.wait()?;
         }
         let moving = began.elapsed().as_secs_f64() / f64::from(frame);
@@ -80,10 +80,10 @@ pub fn by_placements(gpu: &Gpu) -> Result<(), GpuError> {
     );
     println!("| placements | like the last: submitted | done | composed again: submitted | done |");
     println!("|---|---|---|---|---|");
-    let (renderer, exact) = (Renderer::new(gpu)?, ExactRenderer::new(gpu)?);
+    let (renderer, exact) = (Renderer::new(gpu)?, FaceRenderer::new(gpu)?);
     for count in [100, 1_000, 10_000, 100_000] {
         let (model, scene) = Scenario::new(3).placed(count);
-        let mut shown = ExactScene::new(gpu, exact_model(&scene, &model), (&scene, &model), Style::Shaded)?;
+        let mut shown = FaceScene::new(gpu, trimmed_model(&scene, &model), (&scene, &model), Style::Shaded)?;
         let mut best = [[f64::INFINITY; 2]; 2];
         let began = Instant::now();
         for frame in 0..8 {
@@ -92,7 +92,7 @@ pub fn by_placements(gpu: &Gpu) -> Result<(), GpuError> {
             for kind in best.iter_mut().rev() {
                 let options = options([640, 480]).with_background(background);
                 let started = Instant::now();
-                renderer.draw_exact(gpu, &exact, &mut shown, &options)?;
+                renderer.draw_faces(gpu, &exact, &mut shown, &options)?;
                 let submitted = started.elapsed().as_secs_f64();
                 gpu.wait()?;
                 *kind = [kind[0].min(submitted), kind[1].min(started.elapsed().as_secs_f64())];
@@ -118,16 +118,16 @@ pub fn by_grids(gpu: &Gpu) -> Result<(), GpuError> {
     println!("from frame to frame.\n");
     println!("| picture | points a surface | frames/s, still | frames/s, animated |");
     println!("|---|---|---|---|");
-    let (renderer, exact) = (Renderer::new(gpu)?, ExactRenderer::new(gpu)?);
+    let (renderer, exact) = (Renderer::new(gpu)?, FaceRenderer::new(gpu)?);
     let scenario = Scenario::new(30);
     let (model, scene) = scenario.model();
     let sizes = [160, 320, 640, 1280, 1920, 3840, 7680];
     for width in sizes.into_iter().filter(|w| *w <= largest) {
-        let mut shown = ExactScene::new(gpu, exact_model(&scene, &model), (&scene, &model), Style::Shaded)?;
+        let mut shown = FaceScene::new(gpu, trimmed_model(&scene, &model), (&scene, &model), Style::Shaded)?;
         let options = options([width, width * 3 / 4]);
-        let points = renderer.draw_exact(gpu, &exact, &mut shown, &options)?.points;
+        let points = renderer.draw_faces(gpu, &exact, &mut shown, &options)?.points;
         let still = seconds(|| {
-            renderer.draw_exact(gpu, &exact, &mut shown, &options)?;
+            renderer.draw_faces(gpu, &exact, &mut shown, &options)?;
             gpu.wait()
         })?;
         let mut frame = 0;
@@ -136,7 +136,7 @@ pub fn by_grids(gpu: &Gpu) -> Result<(), GpuError> {
             for (k, sheet) in scenario.surfaces.iter().enumerate() {
                 shown.set_surface(gpu, 0, k, &swaying(sheet, frame))?;
             }
-            renderer.draw_exact(gpu, &exact, &mut shown, &options)?;
+            renderer.draw_faces(gpu, &exact, &mut shown, &options)?;
             gpu.wait()
         })?;
         println!(

@@ -135,7 +135,7 @@ fn fragment(in: ExactOut, @builtin(front_facing) front: bool) -> Covered {
 // Towards the outside, in view space.
 fn normal_in(in: ExactOut) -> vec3<f32> {
     if view.depth.y > 0.0 && faces[in.face].degrees > 0u {
-        let normal = exact_normal(in.face, in.spot);
+        let normal = face_normal(in.face, in.spot);
         if any(normal != vec3<f32>(0.0)) {
             return placements[in.placement].normal * (faces[in.face].turn * normal);
         }

@@ -2,24 +2,29 @@
 //!
 //! 1. Placements and faces that the view cannot show are rejected by bounds (`visible.rs`).
 //! 2. Each face that is left is asked how fine it must be (`choice.rs`). Where samples that are there serve, they are kept.
-//! 3. The others are evaluated together, in one dispatch for each resident, and become a generation (`generation.rs`).
-//! 4. Generations that hold little of use are evaluated anew with them, so that there are never many.
+//! 3. The others are evaluated together, in one dispatch for each store, and become a batch (`batch.rs`).
+//! 4. Batches that hold little of use are evaluated anew with them, so that there are never many.
 
 use super::blocks::Blocks;
-use super::calm::Calm;
 use super::choice::Choice;
-use super::exact::ExactRenderer;
-use super::generation::{Generation, Member, most_points};
+use super::device_store::{FaceLocation, FaceStore, upload_faces};
+use super::face_batch::{FaceBatch, Member, most_points};
+use super::face_renderer::FaceRenderer;
+use super::frame_counts::FrameCounts;
 use super::mesh_groups::Triangles;
 use super::mesh_shapes::{scene_outline, scenery_of, seen_through, shape_boxes};
+use super::options::{Background, RenderOptions, Style, Trim};
+use super::picture::Picture;
 use super::renderer::{Renderer, Stage, draw};
-use super::residents::{Home, Resident, settle};
+use super::shapes::Scenery;
+use super::still_frame::StillFrame;
 use super::target::Target;
 use super::view_data::{Standing, standing, view_data};
 use super::view_lines::ViewLines;
 use super::visible::{Frustum, Shown, Visible};
-use super::{Background, Picture, RenderOptions, Scenery, Style, Trim};
-use crate::{ExactModel, Gpu, GpuError};
+use crate::device::Gpu;
+use crate::error::GpuError;
+use crate::faces::TrimmedModel;
 use chordal_brep::Model;
 use chordal_mesh::Scene;
 use chordal_nurbs::NurbsSurface;
@@ -27,30 +32,15 @@ use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// Small generations that are kept before the smaller half of them is evaluated anew.
-const MOST_GENERATIONS: usize = 12;
-/// What one frame took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct FrameCounts {
-    /// Faces drawn, those of parts that are placed several times once for all placements that share samples.
-    pub faces: usize,
-    /// Faces evaluated for this frame, and their points.
-    pub evaluated: usize,
-    pub points: usize,
-    /// Faces beyond the picture, and faces that show their backs.
-    pub outside: usize,
-    pub backs: usize,
-    /// Placements beyond the picture.
-    pub placements_outside: usize,
-}
+/// Small batches that are kept before the smaller half of them is evaluated anew.
+const MOST_BATCHES: usize = 12;
 
 /// A model on the device.
 #[derive(Debug)]
-pub struct ExactScene<'a> {
+pub struct FaceScene<'a> {
     scene: &'a Scene,
     model: &'a Model,
-    exact: ExactModel,
+    exact: TrimmedModel,
     style: Style,
     scenery: Scenery,
     /// Per placement of the scenery.
@@ -59,24 +49,24 @@ pub struct ExactScene<'a> {
     /// Parts of which some face may show its back alone.
     closed: Vec<bool>,
     outline: Vec<DVec3>,
-    residents: Vec<Resident>,
-    homes: Vec<Vec<Home>>,
+    stores: Vec<FaceStore>,
+    locations: Vec<Vec<FaceLocation>>,
     stage: Stage,
     triangles: Vec<Triangles>,
     lines: ViewLines,
     trim: Trim,
-    generations: BTreeMap<u64, Generation>,
-    next_generation: u64,
+    batches: BTreeMap<u64, FaceBatch>,
+    next_batch: u64,
     /// By shape and class, then by face.
     sampled: BTreeMap<(usize, i32), Vec<Option<Sampled>>>,
-    /// What is drawn of every generation.
+    /// What is drawn of every batch.
     lists: BTreeMap<u64, List>,
-    calm: Option<Calm>,
+    still_frame: Option<StillFrame>,
     seen: Option<Seen>,
     target: Option<Target>,
 }
 
-/// Faces of a generation with the placements they are seen in, and their blocks.
+/// Faces of a batch with the placements they are seen in, and their blocks.
 #[derive(Debug)]
 struct List {
     drawn: Vec<(usize, Range<u32>)>,
@@ -86,7 +76,7 @@ struct List {
 /// Where a face's samples are.
 #[derive(Clone, Copy, Debug)]
 struct Sampled {
-    generation: u64,
+    batch: u64,
     index: usize,
     choice: Choice,
     /// The surface has changed since.
@@ -110,14 +100,14 @@ struct Seen {
 /// A face to be evaluated.
 type Wish = (Key, Choice);
 
-impl<'a> ExactScene<'a> {
+impl<'a> FaceScene<'a> {
     /// Uploads what does not change with the view. `scene` and `model` are those that `exact` was made of.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] for a face beyond what the device binds at once, and what [`Gpu::watched`] gives.
     pub fn new(
         gpu: &Gpu,
-        mut exact: ExactModel,
+        mut exact: TrimmedModel,
         (scene, model): (&'a Scene, &'a Model),
         style: Style,
     ) -> Result<Self, GpuError> {
@@ -130,7 +120,7 @@ impl<'a> ExactScene<'a> {
         // Lines are made for the view.
         scenery.shapes.iter_mut().for_each(|shape| shape.segments.clear());
         gpu.watched("uploading the model", || {
-            let (residents, homes) = settle(gpu, &exact, gpu.binding_limit())?;
+            let (stores, locations) = upload_faces(gpu, &exact, gpu.binding_limit())?;
             Ok(Self {
                 standing: standing(&scenery),
                 boxes: shape_boxes(scene),
@@ -140,11 +130,11 @@ impl<'a> ExactScene<'a> {
                 lines: ViewLines::new(scenery.shapes.len()),
                 closed: exact.parts.iter().map(|p| p.faces.iter().any(|f| f.outward.is_some())).collect(),
                 trim: Trim::default(),
-                generations: BTreeMap::new(),
-                next_generation: 0,
+                batches: BTreeMap::new(),
+                next_batch: 0,
                 sampled: BTreeMap::new(),
                 lists: BTreeMap::new(),
-                calm: None,
+                still_frame: None,
                 seen: None,
                 target: None,
                 scene,
@@ -152,20 +142,20 @@ impl<'a> ExactScene<'a> {
                 exact,
                 style,
                 scenery,
-                residents,
-                homes,
+                stores,
+                locations,
             })
         })
     }
 
     /// The faces that are drawn exactly, and those that are not.
-    pub fn exact(&self) -> &ExactModel {
+    pub fn exact(&self) -> &TrimmedModel {
         &self.exact
     }
 
     /// All points that are on the device.
     pub fn points(&self) -> usize {
-        self.generations.values().map(|g| g.points).sum()
+        self.batches.values().map(|g| g.points).sum()
     }
 
     /// Puts a surface of the same degrees and counts in the place of that of face `face` (a number among the exact faces of
@@ -181,15 +171,15 @@ impl<'a> ExactScene<'a> {
         face: usize,
         surface: &NurbsSurface,
     ) -> Result<u64, GpuError> {
-        let home = *self
-            .homes
+        let location = *self
+            .locations
             .get(part)
             .and_then(|of_part| of_part.get(face))
             .ok_or(GpuError::NoSuchSurface(face))?;
-        let resident = &mut self.residents[home.resident];
-        let edit = resident.set.replace(home.surface, surface)?;
-        let sent = resident.on_device.update(gpu, &resident.set, home.surface, edit)?;
-        (self.calm, self.seen) = (None, None);
+        let store = &mut self.stores[location.store];
+        let edit = store.set.replace(location.surface, surface)?;
+        let sent = store.on_device.update(gpu, &store.set, location.surface, edit)?;
+        (self.still_frame, self.seen) = (None, None);
         let of_part = &mut self.exact.parts[part];
         of_part.faces[face].replace_surface(surface);
         // A shell that moves may open.
@@ -202,7 +192,7 @@ impl<'a> ExactScene<'a> {
         for (_, faces) in self.sampled.iter_mut().filter(|(key, _)| key.0 == part) {
             // Samples know their place by its span.
             if edit.knots {
-                forget(&mut self.generations, faces[face].take());
+                forget(&mut self.batches, faces[face].take());
             }
             faces[face].iter_mut().for_each(|s| s.stale = true);
         }
@@ -212,7 +202,7 @@ impl<'a> ExactScene<'a> {
     pub(crate) fn draw(
         &mut self,
         gpu: &Gpu,
-        (renderer, exact): (&Renderer, &ExactRenderer),
+        (renderer, exact): (&Renderer, &FaceRenderer),
         options: &RenderOptions,
     ) -> Result<FrameCounts, GpuError> {
         if self.target.as_ref().is_none_or(|t| t.size != options.size) {
@@ -223,13 +213,13 @@ impl<'a> ExactScene<'a> {
             let seen = kept.unwrap_or_else(|| self.see(gpu, options));
             let Seen { visible, frustum, .. } = &seen;
             let backs = options.reject && options.section.is_none();
-            let calm = self.calm.as_ref().filter(|_| self.trim == options.trim);
-            let mut counts = match calm.and_then(|c| c.counts(visible, backs, &self.closed)) {
+            let still_frame = self.still_frame.as_ref().filter(|_| self.trim == options.trim);
+            let mut counts = match still_frame.and_then(|c| c.counts(visible, backs, &self.closed)) {
                 Some(counts) => counts,
                 None => {
                     let (counts, keys) = self.evaluate(gpu, exact, visible, frustum, options)?;
                     self.list_blocks(gpu, exact, &keys)?;
-                    self.calm = self.calm(visible, &counts);
+                    self.still_frame = self.still_frame(visible, &counts);
                     counts
                 }
             };
@@ -243,11 +233,11 @@ impl<'a> ExactScene<'a> {
                 renderer.draw_triangles(gpu, pass, &self.stage, &self.triangles, &visible.placed);
                 pass.set_pipeline(exact.faces(self.trim));
                 for (id, list) in &self.lists {
-                    self.generations[id].draw_faces(pass, exact, &list.blocks);
+                    self.batches[id].draw_faces(pass, exact, &list.blocks);
                 }
                 pass.set_pipeline(&exact.borders);
                 for (id, list) in &self.lists {
-                    self.generations[id].draw_borders(pass, exact, &list.blocks);
+                    self.batches[id].draw_borders(pass, exact, &list.blocks);
                 }
                 if options.lines {
                     renderer.draw_lines(pass, self.lines.get(), &visible.placed);
@@ -259,9 +249,9 @@ impl<'a> ExactScene<'a> {
     }
 
     /// What the next frame may rely on, if this one shows everything.
-    fn calm(&self, visible: &Visible, counts: &FrameCounts) -> Option<Calm> {
+    fn still_frame(&self, visible: &Visible, counts: &FrameCounts) -> Option<StillFrame> {
         let textured = self.trim == Trim::Texture;
-        Calm::of(visible, counts, |level| {
+        StillFrame::of(visible, counts, |level| {
             let slots = self.sampled[&(level.shape, level.class)].iter();
             let errors = slots.zip(&self.exact.parts[level.shape].faces);
             errors.map(|(slot, face)| Some(slot.as_ref()?.choice.errors_served(face, textured))).collect()
@@ -291,17 +281,17 @@ impl<'a> ExactScene<'a> {
     fn evaluate(
         &mut self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
+        renderer: &FaceRenderer,
         visible: &Visible,
         frustum: &Frustum,
         options: &RenderOptions,
     ) -> Result<(FrameCounts, Vec<DrawnFace>), GpuError> {
         if self.trim != options.trim {
-            (self.trim, self.generations, self.sampled) = (options.trim, BTreeMap::new(), BTreeMap::new());
+            (self.trim, self.batches, self.sampled) = (options.trim, BTreeMap::new(), BTreeMap::new());
             self.lists.clear();
         }
         self.forget_levels(visible);
-        let worn = self.worn_generations(gpu);
+        let worn = self.worn_batches(gpu);
         let leave_out_backs = options.reject && options.section.is_none();
         let (mut counts, mut keys, mut wishes) = (FrameCounts::default(), Vec::new(), Vec::<Wish>::new());
         for level in &visible.levels {
@@ -319,7 +309,7 @@ impl<'a> ExactScene<'a> {
                             Some(s) if !s.choice.serves(&needed, options.trim == Trim::Texture) => {
                                 wishes.push(((at, index), needed.with_reserve(face)));
                             }
-                            Some(s) if s.stale || worn.contains(&s.generation) => {
+                            Some(s) if s.stale || worn.contains(&s.batch) => {
                                 wishes.push(((at, index), s.choice));
                             }
                             Some(_) => {}
@@ -340,45 +330,45 @@ impl<'a> ExactScene<'a> {
     fn fulfil(
         &mut self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
+        renderer: &FaceRenderer,
         wishes: Vec<Wish>,
         worn: &BTreeSet<u64>,
     ) -> Result<usize, GpuError> {
-        let mut by_generation: BTreeMap<Option<u64>, Vec<Wish>> = BTreeMap::new();
+        let mut by_batch: BTreeMap<Option<u64>, Vec<Wish>> = BTreeMap::new();
         for wish in wishes {
             let (at, face) = wish.0;
-            by_generation.entry(self.sampled[&at][face].map(|s| s.generation)).or_default().push(wish);
+            by_batch.entry(self.sampled[&at][face].map(|s| s.batch)).or_default().push(wish);
         }
-        let mut by_resident: BTreeMap<usize, Vec<Wish>> = BTreeMap::new();
+        let mut by_store: BTreeMap<usize, Vec<Wish>> = BTreeMap::new();
         let mut points = 0;
-        for (id, wishes) in by_generation {
+        for (id, wishes) in by_batch {
             match id.filter(|id| !worn.contains(id)) {
                 Some(id) if self.stays(id, &wishes) => points += self.again(gpu, renderer, id, &wishes)?,
                 _ => {
                     for wish in wishes {
                         let ((shape, _), face) = wish.0;
-                        by_resident.entry(self.homes[shape][face].resident).or_default().push(wish);
+                        by_store.entry(self.locations[shape][face].store).or_default().push(wish);
                     }
                 }
             }
         }
-        for (resident, wishes) in by_resident {
-            points += self.new_generations(gpu, renderer, resident, &wishes)?;
+        for (store, wishes) in by_store {
+            points += self.new_generations(gpu, renderer, store, &wishes)?;
         }
         Ok(points)
     }
 
-    /// True where the faces are all of a generation's and need no other samples.
+    /// True where the faces are all of a batch's and need no other samples.
     fn stays(&self, id: u64, wishes: &[Wish]) -> bool {
         let same = |((at, face), choice): &Wish| self.sampled[at][*face].is_some_and(|s| s.choice == *choice);
-        self.generations[&id].live == wishes.len() && wishes.iter().all(same)
+        self.batches[&id].live == wishes.len() && wishes.iter().all(same)
     }
 
-    /// Evaluates a generation in place after an edit of its surfaces; the number of points.
+    /// Evaluates a batch in place after an edit of its surfaces; the number of points.
     fn again(
         &mut self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
+        renderer: &FaceRenderer,
         id: u64,
         wishes: &[Wish],
     ) -> Result<usize, GpuError> {
@@ -387,20 +377,20 @@ impl<'a> ExactScene<'a> {
             let slot = self.sampled.get_mut(at).and_then(|faces| faces[*face].as_mut());
             if let Some(sampled) = slot {
                 sampled.stale = false;
-                members.push((sampled.index, self.homes[at.0][*face], self.scenery.shapes[at.0].middle));
+                members.push((sampled.index, self.locations[at.0][*face], self.scenery.shapes[at.0].middle));
             }
         }
-        let Some(generation) = self.generations.get_mut(&id) else { return Ok(0) };
-        generation.again(gpu, renderer, &self.residents[generation.resident], members.into_iter())?;
-        Ok(generation.points)
+        let Some(batch) = self.batches.get_mut(&id) else { return Ok(0) };
+        batch.again(gpu, renderer, &self.stores[batch.store], members.into_iter())?;
+        Ok(batch.points)
     }
 
-    /// New generations for faces of one resident, as many as the limits ask for; the number of points.
+    /// New batches for faces of one store, as many as the limits ask for; the number of points.
     fn new_generations(
         &mut self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
-        resident: usize,
+        renderer: &FaceRenderer,
+        store: usize,
         wishes: &[Wish],
     ) -> Result<usize, GpuError> {
         let most = most_points(gpu);
@@ -410,7 +400,7 @@ impl<'a> ExactScene<'a> {
                 let middle = self.scenery.shapes[at.0].middle;
                 Member::new(
                     &self.exact.parts[at.0].faces[*face],
-                    self.homes[at.0][*face],
+                    self.locations[at.0][*face],
                     middle,
                     choice,
                     most,
@@ -427,37 +417,37 @@ impl<'a> ExactScene<'a> {
             }
             let some = &members[first..end];
             let stage = self.stage.buffers();
-            let made = Generation::new(gpu, renderer, &self.residents[resident], some, self.trim, stage)?;
+            let made = FaceBatch::new(gpu, renderer, &self.stores[store], some, self.trim, stage)?;
             points += made.points;
-            let id = self.next_generation;
-            self.next_generation += 1;
-            self.generations.insert(id, made);
+            let id = self.next_batch;
+            self.next_batch += 1;
+            self.batches.insert(id, made);
             for (index, &((at, face), choice)) in wishes[first..end].iter().enumerate() {
                 let slot = &mut self.sampled.get_mut(&at).expect("entered when the face was asked for")[face];
-                let old = slot.replace(Sampled { generation: id, index, choice, stale: false });
-                forget(&mut self.generations, old);
+                let old = slot.replace(Sampled { batch: id, index, choice, stale: false });
+                forget(&mut self.batches, old);
             }
             first = end;
         }
         Ok(points)
     }
 
-    /// Generations that are to be evaluated anew: of too many small ones the smaller half, and those that are mostly unused.
-    fn worn_generations(&self, gpu: &Gpu) -> BTreeSet<u64> {
-        let small = |g: &Generation| 2 * g.points < most_points(gpu);
+    /// Batches that are to be evaluated anew: of too many small ones the smaller half, and those that are mostly unused.
+    fn worn_batches(&self, gpu: &Gpu) -> BTreeSet<u64> {
+        let small = |g: &FaceBatch| 2 * g.points < most_points(gpu);
         let mut by_use: Vec<(usize, u64)> =
-            self.generations.iter().filter(|(_, g)| small(g)).map(|(id, g)| (g.live, *id)).collect();
+            self.batches.iter().filter(|(_, g)| small(g)).map(|(id, g)| (g.live, *id)).collect();
         by_use.sort_unstable();
-        let worn = if by_use.len() > MOST_GENERATIONS { by_use.len() / 2 } else { 0 };
-        let unused = self.generations.iter().filter(|(_, g)| 4 * g.live < g.faces());
+        let worn = if by_use.len() > MOST_BATCHES { by_use.len() / 2 } else { 0 };
+        let unused = self.batches.iter().filter(|(_, g)| 4 * g.live < g.faces());
         by_use.iter().take(worn).map(|(_, id)| *id).chain(unused.map(|(id, _)| *id)).collect()
     }
 
-    /// Drops worn generations; what they still hold is of faces that are not seen now.
+    /// Drops worn batches; what they still hold is of faces that are not seen now.
     fn release(&mut self, worn: &BTreeSet<u64>) {
         for slot in self.sampled.values_mut().flatten() {
-            if slot.is_some_and(|s| worn.contains(&s.generation)) {
-                forget(&mut self.generations, slot.take());
+            if slot.is_some_and(|s| worn.contains(&s.batch)) {
+                forget(&mut self.batches, slot.take());
             }
         }
     }
@@ -470,28 +460,28 @@ impl<'a> ExactScene<'a> {
             self.sampled.keys().filter(|k| seen.contains(&k.0) && !used.contains(k)).copied().collect();
         for key in gone {
             for old in self.sampled.remove(&key).into_iter().flatten() {
-                forget(&mut self.generations, old);
+                forget(&mut self.batches, old);
             }
         }
     }
 
-    /// What is drawn of every generation; lists that were made for the same faces before are kept.
+    /// What is drawn of every batch; lists that were made for the same faces before are kept.
     fn list_blocks(
         &mut self,
         gpu: &Gpu,
-        renderer: &ExactRenderer,
+        renderer: &FaceRenderer,
         keys: &[DrawnFace],
     ) -> Result<(), GpuError> {
         let mut drawn: BTreeMap<u64, Vec<(usize, Range<u32>)>> = BTreeMap::new();
         for ((at, face), placed) in keys {
             if let Some(sampled) = self.sampled[at][*face] {
-                drawn.entry(sampled.generation).or_default().push((sampled.index, placed.clone()));
+                drawn.entry(sampled.batch).or_default().push((sampled.index, placed.clone()));
             }
         }
         self.lists.retain(|id, _| drawn.contains_key(id));
         for (id, drawn) in drawn {
             if self.lists.get(&id).is_none_or(|list| list.drawn != drawn) {
-                let blocks = self.generations[&id].blocks(gpu, renderer, self.trim, &drawn)?;
+                let blocks = self.batches[&id].blocks(gpu, renderer, self.trim, &drawn)?;
                 self.lists.insert(id, List { drawn, blocks });
             }
         }
@@ -504,13 +494,46 @@ impl<'a> ExactScene<'a> {
     }
 }
 
-/// Takes samples from the generation they are in; one without any is dropped.
-fn forget(generations: &mut BTreeMap<u64, Generation>, old: Option<Sampled>) {
+/// Exact faces through the renderer that also draws meshes.
+impl Renderer {
+    /// Draws a frame of exact faces and leaves it on the device; what has no exact form is drawn as its mesh.
+    /// Styles that measure or show the mesh are drawn from it, by [`Self::render`].
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    pub fn draw_faces(
+        &self,
+        gpu: &Gpu,
+        exact: &FaceRenderer,
+        scene: &mut FaceScene,
+        options: &RenderOptions,
+    ) -> Result<FrameCounts, GpuError> {
+        scene.draw(gpu, (self, exact), options)
+    }
+
+    /// As [`Self::draw_faces`], and brings the picture to the host.
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    pub fn render_faces(
+        &self,
+        gpu: &Gpu,
+        exact: &FaceRenderer,
+        scene: &mut FaceScene,
+        options: &RenderOptions,
+    ) -> Result<(Picture, FrameCounts), GpuError> {
+        let counts = scene.draw(gpu, (self, exact), options)?;
+        Ok((scene.read(gpu, options.background)?, counts))
+    }
+}
+
+/// Takes samples from the batch they are in; one without any is dropped.
+fn forget(batches: &mut BTreeMap<u64, FaceBatch>, old: Option<Sampled>) {
     let Some(old) = old else { return };
-    if let Some(generation) = generations.get_mut(&old.generation) {
-        generation.live -= 1;
-        if generation.live == 0 {
-            generations.remove(&old.generation);
+    if let Some(batch) = batches.get_mut(&old.batch) {
+        batch.live -= 1;
+        if batch.live == 0 {
+            batches.remove(&old.batch);
         }
     }
 }
