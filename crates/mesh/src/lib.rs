@@ -1,5 +1,7 @@
 //! Mesh buffers that remember where every vertex came from, and the scene of placed meshes that writers write.
 
+#![deny(missing_docs)]
+
 mod analytic;
 mod import;
 mod part_mesh;

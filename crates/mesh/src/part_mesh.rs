@@ -8,7 +8,12 @@ pub enum Origin {
     /// The part's vertex.
     Vertex(u32),
     /// Sample `index` (from 1, the ends are vertices) of an edge.
-    Edge { edge: u32, index: u32 },
+    Edge {
+        /// The edge's index in its part.
+        edge: u32,
+        /// The sample's number along the edge, from 1.
+        index: u32,
+    },
     /// A point of a face, inside it or on a seam or pole that only this face has.
     Face(u32),
 }
@@ -29,6 +34,7 @@ pub struct Corner {
 pub struct FaceMesh {
     /// The face's index in its part.
     pub face: u32,
+    /// The corners of its triangles; two corners may share a position but differ in uv or normal.
     pub corners: Vec<Corner>,
     /// Indices into `corners`, counter-clockwise seen from outside the material.
     pub triangles: Vec<[u32; 3]>,
@@ -52,6 +58,7 @@ impl FaceMesh {
 /// A mesh whose positions are shared by identity: two faces that meet at an edge use the same indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartMesh {
+    /// The vertices, in the part's own units.
     pub positions: Vec<DVec3>,
     /// One per position.
     pub origins: Vec<Origin>,
@@ -62,6 +69,7 @@ pub struct PartMesh {
 }
 
 impl PartMesh {
+    /// How many triangles all faces have together.
     pub fn triangle_count(&self) -> usize {
         self.faces.iter().map(|f| f.triangles.len()).sum()
     }

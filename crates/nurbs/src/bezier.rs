@@ -10,11 +10,14 @@ pub use crate::bezier_patch::BezierPatch;
 /// A Bézier curve over 0..=1; rational where it has weights. `points` are projected (not multiplied by weights).
 #[derive(Clone, Debug, PartialEq)]
 pub struct BezierCurve<V> {
+    /// The control points, projected (not multiplied by weights); one more than the degree.
     pub points: Vec<V>,
+    /// The weights, one per control point; absent for a polynomial curve.
     pub weights: Option<Vec<f64>>,
 }
 
 impl<V: Vector> BezierCurve<V> {
+    /// The degree.
     pub fn degree(&self) -> usize {
         self.points.len() - 1
     }

@@ -10,8 +10,11 @@ use glam::{DVec2, DVec3};
 /// `points` are projected (not multiplied by weights).
 #[derive(Clone, Debug, PartialEq)]
 pub struct BezierPatch {
+    /// The degrees along u and along v.
     pub degree: [usize; 2],
+    /// The control points, projected; `(degree[0] + 1) * (degree[1] + 1)` of them.
     pub points: Vec<DVec3>,
+    /// The weights, one per control point in the same order; absent for a polynomial patch.
     pub weights: Option<Vec<f64>>,
 }
 

@@ -18,8 +18,11 @@ use swept::{ProfileTable, Thirds};
 /// Homogeneous vectors near `center`: the spatial part within `radius`, the weight within `weight_radius`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ball4 {
+    /// The middle of the ball: spatial part and weight.
     pub center: DVec4,
+    /// The radius of the spatial part.
     pub radius: f64,
+    /// The largest difference of the weight.
     pub weight_radius: f64,
 }
 
@@ -162,10 +165,12 @@ impl<'a> SurfaceBounds<'a> {
         Self { surface, domain, wrap, prepared }
     }
 
+    /// The surface that the bounds are of.
     pub fn surface(&self) -> &'a Surface {
         self.surface
     }
 
+    /// The box of parameters that was given to [`SurfaceBounds::new`].
     pub fn domain(&self) -> UvBox {
         self.domain
     }
@@ -266,6 +271,7 @@ impl<'a> SurfaceBounds<'a> {
 pub struct Wrap([Option<Range>; 2]);
 
 impl Wrap {
+    /// The closed directions of a surface.
     pub fn of(surface: &Surface) -> Self {
         let [period_u, period_v] = surface.periods();
         let domain = surface.domain();

@@ -5,9 +5,13 @@ use glam::{DVec2, DVec3};
 /// A right-handed orthonormal placement in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
+    /// The origin.
     pub origin: DVec3,
+    /// The first axis, a unit vector.
     pub x: DVec3,
+    /// The second axis, a unit vector.
     pub y: DVec3,
+    /// The third axis, a unit vector: `x × y`.
     pub z: DVec3,
 }
 
@@ -49,8 +53,11 @@ impl Frame {
 /// An orthonormal placement in the plane; `y` is `x` turned by a right angle, or its negative where mirrored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame2 {
+    /// The origin.
     pub origin: DVec2,
+    /// The first axis, a unit vector.
     pub x: DVec2,
+    /// The second axis, a unit vector at right angles to `x`.
     pub y: DVec2,
 }
 

@@ -15,6 +15,7 @@ use std::sync::OnceLock;
 /// The closest point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveInversion {
+    /// The curve's parameter at the closest point.
     pub t: f64,
     /// From the given point to the curve's point at `t`, in model units.
     pub distance: f64,

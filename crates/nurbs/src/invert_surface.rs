@@ -16,6 +16,7 @@ use terrain::Terrain;
 /// The closest point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inversion {
+    /// The surface's parameters at the closest point.
     pub uv: DVec2,
     /// From the given point to the surface's point at `uv`, in model units.
     pub distance: f64,
@@ -88,6 +89,7 @@ impl<'a> SurfaceInverter<'a> {
         Self { surface, start, periods, method }
     }
 
+    /// The surface that is inverted.
     pub fn surface(&self) -> &'a Surface {
         self.surface
     }

@@ -7,6 +7,8 @@
 //!   along its **axis**, an extrusion is `c(u) + v·d`, a revolution turns `c(v)` by the angle `u`.
 //! - `_uv` names a point of parameter space, `_xyz` one of model space.
 
+#![deny(missing_docs)]
+
 pub use glam::{DAffine3, DVec2, DVec3, DVec4};
 
 mod basis;

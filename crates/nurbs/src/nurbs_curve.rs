@@ -17,7 +17,9 @@ pub struct NurbsCurve<V> {
     weights: Option<Vec<f64>>,
 }
 
+/// A B-spline in the plane.
 pub type NurbsCurve2 = NurbsCurve<DVec2>;
+/// A B-spline in space.
 pub type NurbsCurve3 = NurbsCurve<DVec3>;
 
 impl<V: Vector> NurbsCurve<V> {
@@ -38,18 +40,23 @@ impl<V: Vector> NurbsCurve<V> {
         let weights = basis::check_weights(weights, points.len())?;
         Ok(Self { degree, knots, points, weights })
     }
+    /// The degree, 1 to 100.
     pub fn degree(&self) -> usize {
         self.degree
     }
+    /// The knots, not decreasing: `points + degree + 1` of them.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
+    /// The control points, projected (not multiplied by weights).
     pub fn points(&self) -> &[V] {
         &self.points
     }
+    /// The weights, one per control point; absent for a polynomial curve.
     pub fn weights(&self) -> Option<&[f64]> {
         self.weights.as_deref()
     }
+    /// The range of the parameter: `knots[degree]..knots[points]`.
     pub fn domain(&self) -> Range {
         Range::new(self.knots[self.degree], self.knots[self.points.len()])
     }

@@ -64,12 +64,15 @@ impl NurbsSurface {
             periods: Memo::default(),
         })
     }
+    /// The degrees along u and along v, each 1 to 100.
     pub fn degree(&self) -> [usize; 2] {
         [self.degree_u, self.degree_v]
     }
+    /// The knots along u, not decreasing.
     pub fn knots_u(&self) -> &[f64] {
         &self.knots_u
     }
+    /// The knots along v, not decreasing.
     pub fn knots_v(&self) -> &[f64] {
         &self.knots_v
     }
@@ -77,12 +80,15 @@ impl NurbsSurface {
     pub fn counts(&self) -> [usize; 2] {
         [self.count_u, self.count_v]
     }
+    /// The control points, projected; point (i, j), i along u, is `points[i * count_v + j]`.
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
+    /// The weights, one per control point in the same order; absent for a polynomial surface.
     pub fn weights(&self) -> Option<&[f64]> {
         self.weights.as_deref()
     }
+    /// The ranges of both parameters.
     pub fn domain(&self) -> UvBox {
         UvBox::from_ranges(
             Range::new(self.knots_u[self.degree_u], self.knots_u[self.count_u]),

@@ -18,6 +18,8 @@
 //! Edges that are used twice are never touched. The grid of the 2001 paper (Kahlesz, Balázs and Klein, section 8) is a
 //! tree here, because the sizes of edges in one file differ by many orders of magnitude.
 
+#![deny(missing_docs)]
+
 mod border;
 mod cluster;
 mod cut;

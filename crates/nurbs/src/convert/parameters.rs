@@ -8,15 +8,20 @@ use glam::DVec2;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ParameterMap {
+    /// Both parameters are the same.
     Identity,
     /// Equal arcs of the angle `step` from `start` on: `m + h tan(θ/2)/tan(h/2)` in each, θ from its middle m, h = step/2.
     Arcs {
+        /// The first angle.
         start: f64,
+        /// The angle of one arc.
         step: f64,
     },
     /// The same with hyperbolic tangents.
     Hyperbolas {
+        /// The first parameter.
         start: f64,
+        /// The length of one piece.
         step: f64,
     },
     /// Pieces of unit length: the piece's own parameters at its two ends, and its map.
@@ -78,7 +83,9 @@ fn middle(t: f64, start: f64, step: f64) -> (f64, f64) {
 /// How the parameters of a surface turn into those of its NURBS form: each direction by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NurbsParameters {
+    /// The map along u.
     pub u: ParameterMap,
+    /// The map along v.
     pub v: ParameterMap,
 }
 

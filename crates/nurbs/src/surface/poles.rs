@@ -11,7 +11,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct Pole {
     /// 0: the line u = `value`; 1: the line v = `value`.
     pub axis: usize,
+    /// The value of the fixed parameter.
     pub value: f64,
+    /// The point in space.
     pub point: DVec3,
 }
 

@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec2, DVec3};
 /// A moved surface and what became of its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransformedSurface {
+    /// The moved surface.
     pub surface: Surface,
     /// The parameters (u, v) of the old surface are (−u, v) of the new one. Happens where a mirror meets a surface with
     /// a placement, since placements stay right-handed.

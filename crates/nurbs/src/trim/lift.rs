@@ -54,7 +54,9 @@ pub struct PatchPiece {
     pub uv: BezierCurve<DVec2>,
     /// In the patch's own, which map the cell to the unit square.
     pub local: BezierCurve<DVec2>,
+    /// The cell of the surface's parameters that the patch covers.
     pub cell: UvBox,
+    /// The polynomial piece of the surface.
     pub patch: BezierPatch,
 }
 
