@@ -9,8 +9,8 @@ mod scene;
 
 pub use analytic::AnalyticFace;
 pub use import::{
-    AccessorFault, ImportError, ImportFault, ImportFormat, ImportPlace, SoupGroup, TriangleSoup, import_bytes,
-    import_mesh,
+    AccessorFault, ImportError, ImportFault, ImportFormat, ImportPlace, SoupGroup, TriangleSoup,
+    import_bytes, import_mesh,
 };
 pub use part_mesh::{Corner, FaceMesh, Origin, PartMesh};
 pub use scene::{PassThrough, PlacedPart, Rgba, Scene, SceneNode, ScenePart};

@@ -34,7 +34,8 @@ fn counts_beyond_the_file_are_refused() {
     }
     let list = b"ply\nformat ascii 1.0\nelement face 1\nproperty list int int vertex_indices\nend_header\n4000000000 1\n";
     assert!(
-        refusal(list, "ply").contains("refers to vertex 1 of 0") || refusal(list, "ply").contains("ends inside")
+        refusal(list, "ply").contains("refers to vertex 1 of 0")
+            || refusal(list, "ply").contains("ends inside")
     );
 }
 

@@ -2,10 +2,8 @@
 
 use crate::basis::Basis;
 use crate::homogeneous::{self, Homogeneous, project_jet};
-use crate::{NurbsError, Range, UvBox, Vector, blossom, degree};
+use crate::{NurbsError, Range, UvBox, Vector, blossom};
 use glam::DVec2;
-
-pub use crate::bezier_patch::BezierPatch;
 
 /// A Bézier curve over 0..=1; rational where it has weights. `points` are projected (not multiplied by weights).
 #[derive(Clone, Debug, PartialEq)]
@@ -98,18 +96,6 @@ impl<V: Vector> BezierCurve<V> {
     /// The same curve, one degree higher.
     pub fn elevated(&self) -> Self {
         self.through(|net| *net = blossom::elevate(net))
-    }
-
-    /// One degree lower, and a proven bound of the distance at equal parameters.
-    ///
-    /// The bound is infinite where the weights are not all positive. `None` at degree 0.
-    pub fn reduced(&self) -> Option<(Self, f64)> {
-        degree::reduced(self)
-    }
-
-    /// As many degrees lower (but not below 1) as keep the proven distance within `budget`, and that distance.
-    pub fn reduced_within(&self, budget: f64) -> (Self, f64) {
-        degree::reduced_within(self, budget)
     }
 
     /// True where every weight has the same sign (or there is none).

@@ -2,7 +2,7 @@
 
 use crate::basis::Basis;
 use crate::homogeneous::{self, Homogeneous};
-use crate::{BezierCurve, NurbsError, SurfaceJet, UvBox, blossom, compose, tensor};
+use crate::{SurfaceJet, UvBox, blossom, tensor};
 use glam::{DVec2, DVec3};
 
 /// A Bézier patch over the unit square; point (i, j), i along u, is `points[i * (degree[1] + 1) + j]`.
@@ -123,16 +123,6 @@ impl BezierPatch {
     /// The same patch, one degree higher in u.
     pub fn elevated_u(&self) -> Self {
         self.swapped().elevated_v().swapped()
-    }
-
-    /// The curve that the patch makes of `curve`, whose points are in the unit square's coordinates.
-    ///
-    /// Exact, of degree `curve.degree() * (degree[0] + degree[1])`.
-    ///
-    /// # Errors
-    /// [`NurbsError::NoExactForm`] where that degree passes 1000 and the binomials leave the range of f64.
-    pub fn compose(&self, curve: &BezierCurve<DVec2>) -> Result<BezierCurve<DVec3>, NurbsError> {
-        compose::compose(self, curve)
     }
 
     /// True where every weight has the same sign (or there is none).

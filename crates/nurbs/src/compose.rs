@@ -13,10 +13,19 @@ use glam::{DVec2, DVec3};
 
 type Row = Vec<Homogeneous<DVec3>>;
 
-pub(crate) fn compose(
-    patch: &BezierPatch,
-    curve: &BezierCurve<DVec2>,
-) -> Result<BezierCurve<DVec3>, NurbsError> {
+impl BezierPatch {
+    /// The curve that the patch makes of `curve`, whose points are in the unit square's coordinates.
+    ///
+    /// Exact, of degree `curve.degree() * (degree[0] + degree[1])`.
+    ///
+    /// # Errors
+    /// [`NurbsError::NoExactForm`] where that degree passes 1000 and the binomials leave the range of f64.
+    pub fn compose(&self, curve: &BezierCurve<DVec2>) -> Result<BezierCurve<DVec3>, NurbsError> {
+        compose(self, curve)
+    }
+}
+
+fn compose(patch: &BezierPatch, curve: &BezierCurve<DVec2>) -> Result<BezierCurve<DVec3>, NurbsError> {
     let [m, n] = patch.degree;
     if curve.degree() * (m + n) > MAX_SCALED_DEGREE {
         return Err(NurbsError::NoExactForm("the composed degree passes 1000"));

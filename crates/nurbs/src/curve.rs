@@ -3,107 +3,15 @@
 mod breaks;
 mod extent;
 mod offset;
-mod on_surface;
-mod proof;
 mod transform;
 
 use crate::conic::{self, Jet3};
-use crate::{Curve2, Frame, NurbsCurve3, Range, Surface};
+use crate::{CompositeSegment, Curve, CurveJet, Range};
 pub(crate) use breaks::{ANY, repeat_over, surface_lines, tidy};
 use glam::DVec3;
 pub(crate) use offset::unit_jet;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 pub(crate) use transform::similarity;
-
-/// A point of a curve with its first two derivatives by the parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurveJet {
-    /// The point.
-    pub p: DVec3,
-    /// The first derivative.
-    pub d1: DVec3,
-    /// The second derivative.
-    pub d2: DVec3,
-}
-
-/// One piece of a composite curve: `curve` over `start..end`, run backwards where `start > end`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CompositeSegment {
-    /// The whole curve of which this is a piece.
-    pub curve: Curve,
-    /// The curve's own parameter at the start of the piece.
-    pub start: f64,
-    /// The curve's own parameter at the end of the piece.
-    pub end: f64,
-}
-
-/// A curve in space. Parameters are those of ISO 10303-42.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Curve {
-    /// `origin + t·direction`; the direction need not be a unit vector.
-    Line {
-        /// The point at `t = 0`.
-        origin: DVec3,
-        /// The derivative by `t`.
-        direction: DVec3,
-    },
-    /// `origin + r(cos t x + sin t y)`.
-    Circle {
-        /// Centre, plane and the direction of `t = 0`.
-        frame: Frame,
-        /// The radius.
-        radius: f64,
-    },
-    /// `origin + a cos t x + b sin t y`.
-    Ellipse {
-        /// Centre and axes.
-        frame: Frame,
-        /// The half axis along x.
-        a: f64,
-        /// The half axis along y.
-        b: f64,
-    },
-    /// `origin + f(t² x + 2t y)`.
-    Parabola {
-        /// Vertex and axes.
-        frame: Frame,
-        /// The focal distance `f`.
-        focal: f64,
-    },
-    /// `origin + a cosh t x + b sinh t y`.
-    Hyperbola {
-        /// Centre and axes.
-        frame: Frame,
-        /// The half axis along x.
-        a: f64,
-        /// The half axis along y.
-        b: f64,
-    },
-    /// Straight pieces; parameter `i` is point `i`.
-    Polyline(Vec<DVec3>),
-    /// A B-spline, rational or not.
-    Nurbs(NurbsCurve3),
-    /// Pieces end to end; the parameter of piece `i` runs over `i..i+1`.
-    Composite(Vec<CompositeSegment>),
-    /// `basis(t) + distance · unit(basis'(t) × reference)`.
-    Offset {
-        /// The curve that is offset.
-        basis: Box<Curve>,
-        /// The distance, in model units; negative to the other side.
-        distance: f64,
-        /// The direction that, with the tangent, gives the side.
-        reference: DVec3,
-    },
-    /// A curve given only in the parameter space of a surface.
-    OnSurface {
-        /// The surface.
-        surface: Arc<Surface>,
-        /// The curve in the surface's parameters.
-        curve: Box<Curve2>,
-    },
-}
 
 /// Two ends of a free-form curve or surface that are closer than this part of its size are one point.
 /// Files round coordinates to about nine digits; a slit that is narrower has no meaning to a mesh.

@@ -2,78 +2,9 @@
 
 use crate::conic::{self, Jet3};
 use crate::curve::{CLOSED, unit_jet};
-use crate::{Frame2, NurbsCurve2, Range, UvBox};
+use crate::{Curve2, Curve2Jet, Frame2, Range, UvBox};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
-
-/// A point of a planar curve with its first two derivatives by the parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Curve2Jet {
-    /// The point.
-    pub p: DVec2,
-    /// The first derivative.
-    pub d1: DVec2,
-    /// The second derivative.
-    pub d2: DVec2,
-}
-
-/// A curve in the plane; the same parameters as [`crate::Curve`].
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Curve2 {
-    /// `origin + t·direction`; the direction need not be a unit vector.
-    Line {
-        /// The point at `t = 0`.
-        origin: DVec2,
-        /// The derivative by `t`.
-        direction: DVec2,
-    },
-    /// `origin + r(cos t x + sin t y)`.
-    Circle {
-        /// Centre and the direction of `t = 0`.
-        frame: Frame2,
-        /// The radius.
-        radius: f64,
-    },
-    /// `origin + a cos t x + b sin t y`.
-    Ellipse {
-        /// Centre and axes.
-        frame: Frame2,
-        /// The half axis along x.
-        a: f64,
-        /// The half axis along y.
-        b: f64,
-    },
-    /// `origin + f(t² x + 2t y)`.
-    Parabola {
-        /// Vertex and axes.
-        frame: Frame2,
-        /// The focal distance `f`.
-        focal: f64,
-    },
-    /// `origin + a cosh t x + b sinh t y`.
-    Hyperbola {
-        /// Centre and axes.
-        frame: Frame2,
-        /// The half axis along x.
-        a: f64,
-        /// The half axis along y.
-        b: f64,
-    },
-    /// Straight pieces; parameter `i` is point `i`.
-    Polyline(Vec<DVec2>),
-    /// A B-spline, rational or not.
-    Nurbs(NurbsCurve2),
-    /// `(curve, start, end)` pieces end to end; the parameter of piece `i` runs over `i..i+1`.
-    Composite(Vec<(Curve2, f64, f64)>),
-    /// `basis(t) + distance · right-hand unit normal`.
-    Offset {
-        /// The curve that is offset.
-        basis: Box<Curve2>,
-        /// The distance in the plane; negative to the left.
-        distance: f64,
-    },
-}
 
 impl Curve2 {
     /// The point at `t`. Closed free-form curves go round.

@@ -12,9 +12,23 @@
 //! curves differ by at most `max ‖P_i − Q_i‖`. Rational curves do so in homogeneous coordinates, where with `N/W` the
 //! old and `M/Z` the new curve `N/W − M/Z = ((N − M) − (M/Z)(W − Z)) / W`.
 
-use crate::curve_bounds::largest;
 use crate::homogeneous::Homogeneous;
+use crate::vector::largest;
 use crate::{BezierCurve, Vector, blossom};
+
+impl<V: Vector> BezierCurve<V> {
+    /// One degree lower, and a proven bound of the distance at equal parameters.
+    ///
+    /// The bound is infinite where the weights are not all positive. `None` at degree 0.
+    pub fn reduced(&self) -> Option<(Self, f64)> {
+        reduced(self)
+    }
+
+    /// As many degrees lower (but not below 1) as keep the proven distance within `budget`, and that distance.
+    pub fn reduced_within(&self, budget: f64) -> (Self, f64) {
+        reduced_within(self, budget)
+    }
+}
 
 pub(crate) fn reduced<V: Vector>(curve: &BezierCurve<V>) -> Option<(BezierCurve<V>, f64)> {
     if curve.degree() == 0 {

@@ -13,121 +13,12 @@ pub use transform::TransformedSurface;
 
 use crate::conic::wrapped;
 use crate::curve::CLOSED;
-use crate::{Curve, Frame, NurbsSurface, Range, UvBox};
+use crate::{Frame, NurbsSurface, Range, Surface, SurfaceJet, SurfaceKind, UvBox};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Distances to the axis below this part of a torus' minor radius are rounding.
 const ROUNDED: f64 = 1e-14;
-
-/// A point of a surface with its derivatives up to the second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceJet {
-    /// The point.
-    pub p: DVec3,
-    /// The first derivative by u.
-    pub du: DVec3,
-    /// The first derivative by v.
-    pub dv: DVec3,
-    /// The second derivative by u.
-    pub duu: DVec3,
-    /// The mixed derivative.
-    pub duv: DVec3,
-    /// The second derivative by v.
-    pub dvv: DVec3,
-}
-
-/// The kind of a surface without its data, as reports name it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum SurfaceKind {
-    /// [`Surface::Plane`].
-    Plane,
-    /// [`Surface::Cylinder`].
-    Cylinder,
-    /// [`Surface::Cone`].
-    Cone,
-    /// [`Surface::Sphere`].
-    Sphere,
-    /// [`Surface::Torus`].
-    Torus,
-    /// [`Surface::Extrusion`].
-    Extrusion,
-    /// [`Surface::Revolution`].
-    Revolution,
-    /// [`Surface::Nurbs`].
-    Nurbs,
-    /// [`Surface::Offset`].
-    Offset,
-}
-
-/// A surface. Parameters are those of ISO 10303-42; see each variant.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Surface {
-    /// `origin + u x + v y`.
-    Plane {
-        /// Origin and axes; z is the normal.
-        frame: Frame,
-    },
-    /// `origin + r(cos u x + sin u y) + v z`.
-    Cylinder {
-        /// z is the axis; u is measured from x.
-        frame: Frame,
-        /// The radius.
-        radius: f64,
-    },
-    /// `origin + (r + v tan α)(cos u x + sin u y) + v z`; `radius` is the one at v = 0, α the half angle.
-    Cone {
-        /// z is the axis; u is measured from x.
-        frame: Frame,
-        /// The radius at v = 0.
-        radius: f64,
-        /// The angle between the axis and a ruling, in radians; the radius grows with v where it is positive.
-        half_angle: f64,
-    },
-    /// `origin + r cos v (cos u x + sin u y) + r sin v z`.
-    Sphere {
-        /// The centre; z points to the pole v = π/2, u is measured from x.
-        frame: Frame,
-        /// The radius.
-        radius: f64,
-    },
-    /// `origin + (R + r cos v)(cos u x + sin u y) + r sin v z`. Where |R| < r the torus meets its axis, and the surface
-    /// is the part with R + r cos v ≥ 0: an apple for R > 0, a lemon for R < 0.
-    Torus {
-        /// The centre; z is the axis; u is measured from x.
-        frame: Frame,
-        /// The distance of the tube's centre from the axis.
-        major: f64,
-        /// The radius of the tube.
-        minor: f64,
-    },
-    /// `profile(u) + v direction`; the direction need not be a unit vector.
-    Extrusion {
-        /// The curve that is extruded.
-        profile: Curve,
-        /// The derivative by v.
-        direction: DVec3,
-    },
-    /// `profile(v)` turned by the angle `u` about the axis.
-    Revolution {
-        /// The curve that is turned.
-        profile: Curve,
-        /// A point on the axis.
-        axis_origin: DVec3,
-        /// The axis, a unit vector.
-        axis: DVec3,
-    },
-    /// A B-spline surface, rational or not.
-    Nurbs(NurbsSurface),
-    /// `basis(u,v) + distance · unit(Su × Sv)`.
-    Offset {
-        /// The surface that is offset.
-        basis: Box<Surface>,
-        /// The distance along the normal, in model units.
-        distance: f64,
-    },
-}
 
 impl Surface {
     /// The point at `p_uv`. Closed free-form surfaces go round; others are evaluated at the domain's border beyond it.

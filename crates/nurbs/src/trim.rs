@@ -4,9 +4,7 @@
 //! pieces, loses the degrees that it does not need, is cut where it crosses the knot lines of the surface, and each
 //! piece is composed with its patch ([`lift`]); what comes out is approximated by chords ([`chords`]).
 
-mod chords;
 mod lift;
 mod roots;
 
-pub use chords::{ChordCriterion, ChordCut};
 pub use lift::{LiftOptions, LiftedPiece, PatchPiece};

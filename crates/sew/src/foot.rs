@@ -1,6 +1,6 @@
 //! The foot of a point on a piece of a curve, from a parameter that is near already.
 
-use chordal_nurbs::{Curve, Range};
+use chordal_nurbs::{Curve, Range, segment_foot};
 use glam::DVec3;
 
 /// Newton steps; they halve the number of wrong digits once the start is in the right valley.
@@ -54,10 +54,8 @@ fn shorter_until_nearer(
 
 /// The distance of `p` from the segment `a`–`b`, and where its foot lies between them (0 to 1).
 pub(crate) fn segment_distance(p: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
-    let d = b - a;
-    let s = ((p - a).dot(d) / d.length_squared()).clamp(0.0, 1.0);
-    let s = if s.is_nan() { 0.0 } else { s };
-    ((a + d * s).distance(p), s)
+    let s = segment_foot(p, a, b);
+    ((a + (b - a) * s).distance(p), s)
 }
 
 #[cfg(test)]

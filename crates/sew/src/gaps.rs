@@ -24,17 +24,20 @@ const MARGIN: f64 = 3.0;
 /// Gaps between two powers of ten.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GapBin {
-    /// Gaps from here (zero in the first bin) up to ten times `below / 10`.
+    /// The lower end: zero in the first bin, else `below / 10`.
     pub from: f64,
+    /// The upper end.
     pub below: f64,
+    /// How many gaps lie between.
     pub count: usize,
 }
 
 /// How a merge tolerance was found; lengths in the part's own units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AutoTolerance {
+    /// The tolerance that was found.
     pub tolerance: f64,
-    /// What the file says of its accuracy, or what its coordinates are taken to be good for.
+    /// The accuracy that the file states, or that its coordinates are assumed to have.
     pub resolution: f64,
     /// The valley between gaps to be sewn and real openings.
     pub valley: [f64; 2],

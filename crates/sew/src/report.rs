@@ -8,8 +8,11 @@ use chordal_brep::{EdgeId, FaceId, Source};
 pub struct OpenEdge {
     /// In the sewn part.
     pub edge: EdgeId,
+    /// The face that uses it.
     pub face: FaceId,
+    /// The entity of the file that the edge comes from.
     pub source: Source,
+    /// The length of the edge.
     pub length: f64,
     /// From the middle of the edge to the nearest other open edge; `None` where there is no other.
     pub nearest: Option<f64>,

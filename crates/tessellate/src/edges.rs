@@ -15,7 +15,7 @@ use crate::snap::settled;
 use crate::surface::Near;
 use crate::trace::Trace;
 use chordal_brep::{Edge, Part};
-use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range};
+use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, bisect};
 
 /// One edge as a polyline.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -242,23 +242,13 @@ fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
                     let far = one.surface.periods[axis].is_some_and(|p| (a - b).abs() > 0.5 * p);
                     if (a < 0.0) != (b < 0.0) && !far && a.abs().max(b.abs()) > rounding {
                         let side = |t: f64| off(one.parameters(curve.point(t), t, range, Some(places[i])).uv);
-                        found.push(bisected(side, at(i), at(i + 1)));
+                        found.push(bisect(side, at(i), at(i + 1), 52));
                     }
                 }
             }
         }
     }
     found
-}
-
-/// A sign change of `f` between `a` and `b`, to the last bits.
-fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    let negative = f(a) < 0.0;
-    for _ in 0..52 {
-        let middle = 0.5 * (a + b);
-        if (f(middle) < 0.0) == negative { a = middle } else { b = middle }
-    }
-    0.5 * (a + b)
 }
 
 /// How many chords per parameter are needed, along one smooth piece.

@@ -274,7 +274,9 @@ impl fmt::Display for ImportFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Start { expected } => write!(f, "it does not start with `{expected}`"),
-            Self::Version { version, supported } => write!(f, "version {version}, only {supported} is supported"),
+            Self::Version { version, supported } => {
+                write!(f, "version {version}, only {supported} is supported")
+            }
             Self::EndsInside { what } => write!(f, "the file ends inside its {what}"),
             Self::Count { what, stated, held: Some(held) } => {
                 write!(f, "the header states {stated} {what}, the file holds {held}")
@@ -293,7 +295,9 @@ impl fmt::Display for ImportFault {
             }
             Self::ListLength { length } => write!(f, "a list of {length} items"),
             Self::TooManyVertices => f.write_str("over 4294967295 vertices"),
-            Self::TooManyTriangles { limit } => write!(f, "its instances place over {limit} triangles or parts"),
+            Self::TooManyTriangles { limit } => {
+                write!(f, "its instances place over {limit} triangles or parts")
+            }
             Self::NoTriangles => f.write_str("it has no triangles"),
             Self::Json { reason } => write!(f, "its JSON cannot be parsed: {reason}"),
             Self::Extension { name } => write!(f, "it requires the extension {name}, which is not supported"),
@@ -307,7 +311,9 @@ impl fmt::Display for ImportFault {
             Self::Archive { member, reason } if member.is_empty() => {
                 write!(f, "its archive cannot be read: {reason}")
             }
-            Self::Archive { member, reason } => write!(f, "`{member}` in its archive cannot be read: {reason}"),
+            Self::Archive { member, reason } => {
+                write!(f, "`{member}` in its archive cannot be read: {reason}")
+            }
             Self::ArchiveRatio { member, limit } => {
                 write!(f, "`{member}` in its archive unpacks to over {limit} times the file")
             }

@@ -178,8 +178,7 @@ impl File<'_> {
         let corners = match &primitive["indices"] {
             Value::Null => {
                 let positions = self.accessor(&primitive["attributes"]["POSITION"])?;
-                (0..u32::try_from(positions.count).map_err(|_| ImportFault::TooManyVertices)?)
-                    .collect()
+                (0..u32::try_from(positions.count).map_err(|_| ImportFault::TooManyVertices)?).collect()
             }
             indices => self.numbers(indices)?,
         };

@@ -62,6 +62,9 @@ fn import(bytes: &[u8], format: ImportFormat) -> Result<TriangleSoup, ImportErro
         ImportFormat::Gltf => gltf::read_text(bytes, &mut builder),
         ImportFormat::ThreeMf => threemf::read(bytes, &mut builder),
     };
-    read.and_then(|()| Ok(builder.finish()?))
-        .map_err(|fault| ImportError::Invalid { format, place: fault.place, fault: fault.kind })
+    read.and_then(|()| Ok(builder.finish()?)).map_err(|fault| ImportError::Invalid {
+        format,
+        place: fault.place,
+        fault: fault.kind,
+    })
 }

@@ -118,7 +118,8 @@ fn read_header(cursor: &mut Cursor<'_>, builder: &mut Builder) -> Result<Header,
     for number in 2.. {
         let line = cursor.line().ok_or(ImportFault::EndsInside { what: "header" })?;
         let words: Vec<_> = words(line).collect();
-        let error = || Fault::from(ImportFault::HeaderLine { text: text(line) }).at(ImportPlace::Line(number));
+        let error =
+            || Fault::from(ImportFault::HeaderLine { text: text(line) }).at(ImportPlace::Line(number));
         match words.as_slice() {
             [b"format", b"ascii", ..] => header.encoding = Encoding::Ascii,
             [b"format", b"binary_little_endian", ..] => header.encoding = Encoding::Little,

@@ -109,10 +109,8 @@ fn parse(text: &str, builder: &mut Builder) -> Result<Model, Fault> {
             ("item", false) => model.items.push(reference(&tag)?),
             (name, false) => {
                 if let Some((id, object)) = &mut current {
-                    inside(object, name, &tag).map_err(|fault| ImportFault::InObject {
-                        object: *id,
-                        fault: Box::new(fault),
-                    })?;
+                    inside(object, name, &tag)
+                        .map_err(|fault| ImportFault::InObject { object: *id, fault: Box::new(fault) })?;
                 }
             }
             _ => {}
@@ -146,7 +144,8 @@ fn reference(tag: &Tag<'_>) -> Result<(u64, DAffine3), ImportFault> {
     if tag.attribute("path").is_some() {
         return Err(ImportFault::OtherModel);
     }
-    let id = tag.number("objectid").ok_or(ImportFault::Missing { what: "objectid of a component or item" })?;
+    let id =
+        tag.number("objectid").ok_or(ImportFault::Missing { what: "objectid of a component or item" })?;
     let Some(text) = tag.attribute("transform") else { return Ok((id, DAffine3::IDENTITY)) };
     let numbers: Vec<f64> = text.split_ascii_whitespace().filter_map(|n| n.parse().ok()).collect();
     let numbers: [f64; 12] =

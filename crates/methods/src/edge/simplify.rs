@@ -8,7 +8,7 @@
 //! Among polylines through a subset of the vertices that keep the ends and whose shortcuts are all allowed and no longer than
 //! [`LONGEST`], the result has the fewest vertices.
 
-use chordal_nurbs::Vector;
+use chordal_nurbs::{Vector, segment_distance};
 
 /// A shortcut passes over at most this many vertices: it keeps the work linear in the length of the polyline.
 const LONGEST: usize = 256;
@@ -44,13 +44,6 @@ fn is_shortcut<V: Vector>(points: &[V], distance: f64) -> bool {
     let n = points.len();
     let (first, last) = (points[0], points[n - 1]);
     points[1..n - 1].iter().all(|&p| segment_distance(p, first, last) <= distance)
-}
-
-pub fn segment_distance<V: Vector>(p: V, a: V, b: V) -> f64 {
-    let (along, to) = (b - a, p - a);
-    let squared = along.dot(along);
-    let t = if squared > 0.0 { (to.dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    (to - along * t).norm()
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-use crate::zoo::{self, Random};
+use crate::fixtures::{self, Random};
 use crate::*;
 use std::f64::consts::TAU;
 
 #[test]
 fn curves_keep_their_points() {
     let mut random = Random(41);
-    for (name, curve, range) in zoo::curves() {
+    for (name, curve, range) in fixtures::curves() {
         let exact = curve.to_nurbs(range);
         if ["offset", "on cylinder", "on nurbs"].contains(&name) {
             assert!(matches!(exact, Err(NurbsError::NoExactForm(_))), "{name}");
@@ -30,7 +30,7 @@ fn curves_keep_their_points() {
 
 #[test]
 fn planar_curves_keep_their_points() {
-    for (name, curve, range) in zoo::curves2() {
+    for (name, curve, range) in fixtures::curves2() {
         if name == "offset" {
             continue;
         }
@@ -38,7 +38,7 @@ fn planar_curves_keep_their_points() {
         let map = curve.lifted().nurbs_parameters(range).expect(name);
         for i in 0..=50 {
             let t = range.start + range.length() * f64::from(i) / 50.0;
-            // A planar composite of the zoo jumps at its joints, where the form goes halfway.
+            // A planar composite of the fixtures jumps at its joints, where the form goes halfway.
             if name == "composite" && (t - t.round()).abs() < 0.6 {
                 continue;
             }
@@ -64,7 +64,7 @@ fn closed_splines_go_over_their_seam() {
 #[test]
 fn surfaces_keep_their_points() {
     let mut random = Random(42);
-    for (name, surface, uv) in zoo::surfaces() {
+    for (name, surface, uv) in fixtures::surfaces() {
         let exact = surface.to_nurbs(uv);
         if name == "offset" {
             assert!(matches!(exact, Err(NurbsError::NoExactForm(_))));
@@ -86,19 +86,19 @@ fn surfaces_keep_their_points() {
 
 #[test]
 fn a_full_sphere_is_nine_by_five() {
-    let sphere = Surface::Sphere { frame: zoo::frame(), radius: 2.0 };
+    let sphere = Surface::Sphere { frame: fixtures::frame(), radius: 2.0 };
     let nurbs = sphere.to_nurbs(sphere.domain()).unwrap();
     assert_eq!((nurbs.degree(), nurbs.counts()), ([2, 2], [9, 5]));
     let poles = Surface::Nurbs(nurbs).poles();
     assert_eq!(poles.len(), 2);
-    let circle = Curve::Circle { frame: zoo::frame(), radius: 1.0 };
+    let circle = Curve::Circle { frame: fixtures::frame(), radius: 1.0 };
     assert_eq!(circle.to_nurbs(Range::new(0.0, TAU)).unwrap().points().len(), 9);
 }
 
 #[test]
 fn approximations_keep_their_word() {
     let mut random = Random(43);
-    for (name, surface, uv) in zoo::surfaces() {
+    for (name, surface, uv) in fixtures::surfaces() {
         for tolerance in [1e-2, 1e-4] {
             let (nurbs, error) = surface.approximate_nurbs(uv, tolerance).expect(name);
             assert!(error <= tolerance, "{name}: {error}");
@@ -109,7 +109,7 @@ fn approximations_keep_their_word() {
             }
         }
     }
-    for (name, curve, range) in zoo::curves() {
+    for (name, curve, range) in fixtures::curves() {
         let (nurbs, error) = curve.approximate_nurbs(range, 1e-6).expect(name);
         assert!(error <= 1e-6, "{name}: {error}");
         for _ in 0..300 {

@@ -1,5 +1,6 @@
 //! Where a curve loses smoothness.
 
+use crate::bisect::bisect;
 use crate::{Curve, Curve2, Range, Surface, UvBox};
 use glam::DVec2;
 
@@ -164,20 +165,10 @@ fn crossings(
             for line in lines {
                 for i in 0..CROSSING_SAMPLES {
                     if (samples[i][axis] < line) != (samples[i + 1][axis] < line) {
-                        out.push(bisect(|t| curve.point(t)[axis] - line, at(i), at(i + 1)));
+                        out.push(bisect(|t| curve.point(t)[axis] - line, at(i), at(i + 1), 64));
                     }
                 }
             }
         }
     }
-}
-
-/// A sign change of `f` between `a` and `b`, to the last bits.
-fn bisect(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    let negative = f(a) < 0.0;
-    for _ in 0..64 {
-        let mid = 0.5 * (a + b);
-        if (f(mid) < 0.0) == negative { a = mid } else { b = mid }
-    }
-    0.5 * (a + b)
 }

@@ -1,11 +1,11 @@
-use crate::zoo::{self, Random};
+use crate::fixtures::{self, Random};
 use crate::*;
 use std::f64::consts::TAU;
 
 #[test]
 fn points_of_a_surface_come_back() {
     let mut random = Random(21);
-    for (name, surface, uv) in zoo::surfaces() {
+    for (name, surface, uv) in fixtures::surfaces() {
         let inverter = SurfaceInverter::new(&surface, surface.domain());
         for _ in 0..200 {
             let at = random.within_box(uv);
@@ -36,7 +36,7 @@ fn points_of_a_surface_come_back() {
 #[test]
 fn closest_points_are_square_and_no_sample_is_closer() {
     let mut random = Random(22);
-    for (name, surface, uv) in zoo::surfaces() {
+    for (name, surface, uv) in fixtures::surfaces() {
         let inverter = SurfaceInverter::new(&surface, surface.domain());
         let samples: Vec<DVec3> = (0..=120)
             .flat_map(|i| (0..=120).map(move |j| DVec2::new(f64::from(i), f64::from(j)) / 120.0))
@@ -63,15 +63,15 @@ fn closest_points_are_square_and_no_sample_is_closer() {
 
 #[test]
 fn angles_follow_the_hint() {
-    let cylinder = Surface::Cylinder { frame: zoo::frame(), radius: 2.0 };
+    let cylinder = Surface::Cylinder { frame: fixtures::frame(), radius: 2.0 };
     let p = cylinder.point(DVec2::new(0.1, 3.0));
     for turn in [-2.0, 1.0, 3.0] {
         let found = cylinder.invert(p, Some(DVec2::new(0.3 + turn * TAU, 0.0)));
         assert!(found.distance(DVec2::new(0.1 + turn * TAU, 3.0)) < 1e-12);
     }
-    let axis = zoo::frame().origin + zoo::frame().z;
+    let axis = fixtures::frame().origin + fixtures::frame().z;
     assert_eq!(cylinder.invert(axis, Some(DVec2::new(4.5, 0.0))).x, 4.5);
-    let sphere = Surface::Sphere { frame: zoo::frame(), radius: 2.0 };
+    let sphere = Surface::Sphere { frame: fixtures::frame(), radius: 2.0 };
     let pole = sphere.poles()[1].point;
     assert_eq!(sphere.invert(pole, Some(DVec2::new(5.5, 1.0))).x, 5.5);
     let inverter = SurfaceInverter::new(&cylinder, UvBox::new(DVec2::new(3.0, 0.0), DVec2::new(8.0, 1.0)));
@@ -80,7 +80,7 @@ fn angles_follow_the_hint() {
 
 #[test]
 fn both_nappes_of_a_cone() {
-    let cone = Surface::Cone { frame: zoo::frame(), radius: 1.0, half_angle: 0.6 };
+    let cone = Surface::Cone { frame: fixtures::frame(), radius: 1.0, half_angle: 0.6 };
     for at in [DVec2::new(1.0, 3.0), DVec2::new(1.0, -5.0)] {
         let p = cone.point(at);
         assert!(cone.point(cone.invert(p, None)).distance(p) < 1e-13);

@@ -1,4 +1,4 @@
-use crate::zoo::{self, Random};
+use crate::fixtures::{self, Random};
 use crate::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -9,7 +9,7 @@ fn inner(uv: UvBox, h: DVec2) -> UvBox {
 #[test]
 fn jets_are_the_derivatives_of_points() {
     let mut random = Random(3);
-    for (name, surface, uv) in zoo::surfaces() {
+    for (name, surface, uv) in fixtures::surfaces() {
         let h = uv.size() * 1e-5;
         let [us, vs] = surface.all_breaks(uv);
         for _ in 0..60 {
@@ -43,7 +43,7 @@ fn jets_are_the_derivatives_of_points() {
 
 #[test]
 fn poles_are_points_with_normals() {
-    let f = zoo::frame();
+    let f = fixtures::frame();
     let sphere = Surface::Sphere { frame: f, radius: 3.0 };
     let cone = Surface::Cone { frame: f, radius: 2.0, half_angle: 0.4 };
     let apple = Surface::Torus { frame: f, major: 1.0, minor: 2.0 };
@@ -88,11 +88,11 @@ fn poles_are_points_with_normals() {
 
 #[test]
 fn collapsed_rows_are_poles() {
-    let mut points = zoo::nurbs_surface().points().to_vec();
+    let mut points = fixtures::nurbs_surface().points().to_vec();
     for i in 0..5 {
         points[i * 4] = DVec3::new(1., 1., 1.);
     }
-    let s = zoo::nurbs_surface();
+    let s = fixtures::nurbs_surface();
     let s = NurbsSurface::new(s.degree(), s.knots_u().to_vec(), s.knots_v().to_vec(), points, None).unwrap();
     let surface = Surface::Nurbs(s);
     let poles = surface.poles();
@@ -118,10 +118,10 @@ fn closed_surfaces_have_periods() {
     let tube = Surface::Nurbs(NurbsSurface::new([1, 1], knots, vec![0., 0., 1., 1.], points, None).unwrap());
     assert_eq!(tube.periods(), [Some(8.0), None]);
     assert!(tube.point(DVec2::new(8.5, 0.5)).distance(tube.point(DVec2::new(0.5, 0.5))) < 1e-15);
-    let circle = Curve::Circle { frame: zoo::frame(), radius: 1.0 };
+    let circle = Curve::Circle { frame: fixtures::frame(), radius: 1.0 };
     let swept = Surface::Extrusion { profile: circle, direction: DVec3::X };
     assert_eq!(swept.periods(), [Some(TAU), None]);
-    assert_eq!(Surface::Nurbs(zoo::nurbs_surface()).periods(), [None, None]);
+    assert_eq!(Surface::Nurbs(fixtures::nurbs_surface()).periods(), [None, None]);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn moved_surfaces_keep_their_kind() {
     let mirror = similar * DAffine3::from_scale(DVec3::new(-1., 1., 1.));
     let mut random = Random(4);
     for by in [similar, mirror] {
-        for (name, surface, uv) in zoo::surfaces() {
+        for (name, surface, uv) in fixtures::surfaces() {
             let moved = surface.transformed(&by).expect(name);
             assert_eq!(moved.surface.kind(), surface.kind());
             for _ in 0..20 {
@@ -150,7 +150,7 @@ fn moved_surfaces_keep_their_kind() {
 #[test]
 fn offsets_of_elementary_surfaces_are_elementary() {
     let mut random = Random(5);
-    for (name, surface, uv) in zoo::surfaces() {
+    for (name, surface, uv) in fixtures::surfaces() {
         let elementary = ["plane", "cylinder", "cone", "narrowing cone", "sphere", "torus"].contains(&name);
         for distance in [0.3, -0.4] {
             let inner = Surface::Offset { basis: Box::new(surface.clone()), distance: 0.1 };

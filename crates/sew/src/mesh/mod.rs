@@ -31,7 +31,9 @@ use glam::DVec3;
 /// The sewn mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SewnMesh {
+    /// The vertices.
     pub positions: Vec<DVec3>,
+    /// Indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
     /// Per triangle, the given triangle that it is (a part of).
     pub sources: Vec<u32>,
@@ -42,7 +44,9 @@ pub struct SewnMesh {
 /// A border that stays open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OpenBorder {
+    /// How many edges it has.
     pub edges: usize,
+    /// The sum of their lengths.
     pub length: f64,
     /// Of the middles of its edges, the smallest and the largest distance from another open edge that is no neighbour;
     /// `None` where there is no other.
@@ -54,10 +58,13 @@ pub struct OpenBorder {
 /// What sewing a mesh did; lengths in its own unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshSewReport {
+    /// The merge tolerance.
     pub tolerance: f64,
+    /// How the tolerance was found, if it was not given.
     pub auto: Option<AutoTolerance>,
-    /// Edges with a single triangle, and the borders they form.
+    /// Edges with a single triangle before.
     pub open_before: usize,
+    /// The borders that these edges form.
     pub borders: usize,
     /// Stretches along which two borders were sewn.
     pub sewn: usize,
@@ -67,8 +74,9 @@ pub struct MeshSewReport {
     pub merged: usize,
     /// Correspondences that were left out, because a vertex would have moved too far or a triangle vanished.
     pub refused: usize,
+    /// Edges with a single triangle afterwards.
     pub open_after: usize,
-    /// The longest first.
+    /// The borders that stay open, the longest first.
     pub open: Vec<OpenBorder>,
     /// The largest distance that a vertex was moved by.
     pub largest_move: f64,
@@ -80,8 +88,9 @@ pub struct MeshSewReport {
     pub turned: usize,
     /// Edges along which triangles still run the same way, or more than two meet.
     pub inconsistent: usize,
-    /// Connected shells, and those without an open edge.
+    /// Connected shells.
     pub shells: usize,
+    /// Shells without an open edge.
     pub closed_shells: usize,
 }
 

@@ -7,13 +7,15 @@
 //! Sound as long as the mesh lies nearer to the surface than its smallest radius of curvature; facets that lean too far against
 //! the surface are rejected.
 
-mod closer;
+mod chord;
 mod elementary;
 mod extruded;
 mod form;
 mod general;
-
-pub use form::Component;
+mod lattice;
+mod refine_bound;
+mod setting;
+mod slope;
 
 use crate::{Piece, Surface, SurfaceBounds};
 use glam::{DVec2, DVec3};
@@ -103,7 +105,7 @@ pub fn chord_bound(
     match bounds.surface() {
         Surface::Plane { .. } => 0.0,
         Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Sphere { .. } => f64::INFINITY,
-        _ => general::chord_bound(bounds, uv, xyz, parts, scratch),
+        _ => chord::bound(bounds, uv, xyz, parts, scratch),
     }
 }
 

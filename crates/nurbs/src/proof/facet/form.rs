@@ -8,7 +8,7 @@
 //! Bernstein form (Farin, *Curves and Surfaces for CAGD*, chapter 17): its coefficients follow from the second derivatives at
 //! the corners, because those of the error are the function's and the error vanishes at the corners.
 
-use crate::Piece;
+use crate::{Component, Piece};
 use glam::{DVec2, DVec3};
 
 /// Second derivatives over a triangle: uu, uv, vv at the centroid, their rates uuu, uuv, uvv, vvv, and how far they stray.
@@ -117,17 +117,6 @@ fn mean_third(pieces: &[Piece], along: impl Fn(&Piece) -> Component) -> [f64; 4]
         }
     }
     if area > 0.0 { sum.map(|s| s / area) } else { [0.0; 4] }
-}
-
-/// Second derivatives of one coordinate over a piece.
-#[derive(Clone, Copy, Debug)]
-pub struct Component {
-    /// uu, uv, vv in the middle.
-    pub second: [f64; 3],
-    /// uuu, uuv, uvv, vvv somewhere in the piece's cell.
-    pub third: [f64; 4],
-    /// How far the third derivatives stray from these.
-    pub stray: [f64; 4],
 }
 
 /// The interpolation error of a cubic over a triangle.

@@ -14,6 +14,8 @@
 //! has its rounding added. A piece whose weights differ in sign has no bound here: infinity.
 
 use crate::homogeneous::homogeneous;
+use crate::segment::segment_distance;
+use crate::vector::largest;
 use crate::{BezierCurve, NurbsCurve, Range, Vector, basis, bernstein, blossom};
 
 /// Derivatives over shorter parts of a span are bounded over a part of this share: differences of control points over
@@ -119,11 +121,6 @@ pub(crate) fn hull_to_chord<V: Vector>(piece: &BezierCurve<V>, (a, b): (V, V)) -
         + rounding(piece.degree()) * (a.norm() + size([&local]))
 }
 
-/// The largest of some non-negative values; infinity where one is not a number, so that no overflow passes as proof.
-pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |most, value| if value.is_nan() { f64::INFINITY } else { most.max(value) })
-}
-
 /// The share of the polynomial basis that its two ends hold at least.
 fn ends_share(degree: usize) -> f64 {
     0.5f64.powi(degree as i32 - 1).min(1.0)
@@ -179,13 +176,6 @@ fn hull_distance<V: Vector>(piece: &BezierCurve<V>, (a, b): (V, V)) -> f64 {
         }
     };
     inner - share * (inner - ends)
-}
-
-fn segment_distance<V: Vector>(p: V, a: V, b: V) -> f64 {
-    let (along, to) = (b - a, p - a);
-    let squared = along.dot(along);
-    let t = if squared > 0.0 { (to.dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    (to - along * t).norm()
 }
 
 fn polynomial_derivative_bound<V: Vector>(points: &[V], order: usize) -> f64 {

@@ -4,7 +4,6 @@
 //! its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
 //! Cells of a NURBS surface are its Bézier patches (rational ones subdivided), in homogeneous coordinates.
 
-use crate::facet::Component;
 use crate::{Range, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3, DVec4};
 
@@ -122,6 +121,17 @@ impl Piece {
             stray: self.third.map(|ball| ball.radius * length + ball.weight_radius * w.w.abs()),
         }
     }
+}
+
+/// Second derivatives of one coordinate over a piece.
+#[derive(Clone, Copy, Debug)]
+pub struct Component {
+    /// uu, uv, vv in the middle.
+    pub second: [f64; 3],
+    /// uuu, uuv, uvv, vvv somewhere in the piece's cell.
+    pub third: [f64; 4],
+    /// How far the third derivatives stray from these.
+    pub stray: [f64; 4],
 }
 
 #[derive(Clone, Debug)]

@@ -5,7 +5,8 @@
 //! - *Derivatives*, and everything on other surfaces: the chain rule, with bounds of the surface's derivatives over the box
 //!   that the parameter curve keeps to.
 
-use crate::curve_bounds::{hull_to_chord, largest};
+use super::spline_chord::hull_to_chord;
+use crate::vector::largest;
 use crate::{Curve, Curve2, LiftOptions, LiftedPiece, Range, Surface, SurfaceBounds, UvBox};
 use glam::DVec2;
 

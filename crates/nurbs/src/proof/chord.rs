@@ -7,6 +7,8 @@
 //! into short pieces with `max|c''| Δ²/8`. What is bounded is the distance of curve points to the chord; the other
 //! direction follows, because a continuous curve between the chord's ends has a point straight above each of the chord's.
 
+use crate::curve::{repeat_over, tidy};
+use crate::segment::segment_distance;
 use crate::{CompositeSegment, Curve, Range};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -74,7 +76,7 @@ impl Curve {
                 })
             }
             Curve::OnSurface { surface, curve }
-                if let Some(error) = super::on_surface::exact_chord_error(surface, curve, range) =>
+                if let Some(error) = super::lifted::exact_chord_error(surface, curve, range) =>
             {
                 error
             }
@@ -136,7 +138,7 @@ impl Curve {
                 offset_bound(basis, *distance, *reference, order, range)
             }
             Curve::OnSurface { surface, curve } => {
-                super::on_surface::derivative_bound(surface, curve, order, range)
+                super::lifted::derivative_bound(surface, curve, order, range)
             }
         }
     }
@@ -174,7 +176,7 @@ impl Curve {
     fn chained(&self, range: Range, stops: Vec<f64>, error: impl Fn(Range) -> f64) -> f64 {
         let (a, b) = (self.point(range.start), self.point(range.end));
         let off = |t: f64| {
-            if t == range.start || t == range.end { 0.0 } else { distance_to_segment(self.point(t), a, b) }
+            if t == range.start || t == range.end { 0.0 } else { segment_distance(self.point(t), a, b) }
         };
         let rounding = ROUNDING * a.length().max(b.length());
         self.cut(range, stops)
@@ -200,16 +202,16 @@ impl Curve {
         let mut stops = Vec::new();
         if beyond {
             let own = vec![domain.start, domain.end];
-            super::repeat_over(range, self.period(), own, domain.start, &mut stops);
+            repeat_over(range, self.period(), own, domain.start, &mut stops);
         }
-        super::tidy(stops, range)
+        tidy(stops, range)
     }
 
     /// The joints of a composite curve inside `range`.
     fn joints(&self, range: Range) -> Vec<f64> {
         let first = range.start.floor();
         let count = (range.length().ceil() as usize).min(1 << 20) + 1;
-        super::tidy((0..=count).map(|i| first + i as f64).collect(), range)
+        tidy((0..=count).map(|i| first + i as f64).collect(), range)
     }
 
     /// A piece that crosses no seam, moved by whole periods into the domain.
@@ -219,12 +221,6 @@ impl Curve {
         let domain = self.domain();
         Range::new(domain.clamp(piece.start + shift), domain.clamp(piece.end + shift))
     }
-}
-
-pub(crate) fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let d = b - a;
-    let t = (p - a).dot(d) / d.length_squared();
-    p.distance(if t.is_finite() { a + d * t.clamp(0.0, 1.0) } else { a })
 }
 
 /// Pieces an offset is cut into before its bound is given up.

@@ -1,5 +1,4 @@
-use super::distance_to_segment;
-use crate::zoo::{self, Random};
+use crate::fixtures::{self, Random};
 use crate::*;
 use proptest::prelude::*;
 
@@ -7,14 +6,14 @@ use proptest::prelude::*;
 fn sampled(curve: &Curve, t0: f64, t1: f64) -> f64 {
     let (a, b) = (curve.point(t0), curve.point(t1));
     (0..=400)
-        .map(|i| distance_to_segment(curve.point(t0 + (t1 - t0) * f64::from(i) / 400.0), a, b))
+        .map(|i| crate::segment_distance(curve.point(t0 + (t1 - t0) * f64::from(i) / 400.0), a, b))
         .fold(0.0, f64::max)
 }
 
 #[test]
 fn chord_errors_hold_and_are_near_the_truth() {
     let mut random = Random(31);
-    for (name, curve, range) in zoo::curves() {
+    for (name, curve, range) in fixtures::curves() {
         let (mut worst, mut proven): (f64, usize) = (1.0, 0);
         for _ in 0..300 {
             let t0 = random.within(range);
@@ -43,7 +42,7 @@ fn chord_errors_hold_and_are_near_the_truth() {
 
 #[test]
 fn short_chords_are_bounded_tightly() {
-    for (name, curve, range) in zoo::curves() {
+    for (name, curve, range) in fixtures::curves() {
         if ["line", "polyline", "composite"].contains(&name) {
             continue;
         }
@@ -57,7 +56,7 @@ fn short_chords_are_bounded_tightly() {
 
 #[test]
 fn circles_are_exact() {
-    let circle = Curve::Circle { frame: zoo::frame(), radius: 3.0 };
+    let circle = Curve::Circle { frame: fixtures::frame(), radius: 3.0 };
     for turn in [0.1f64, 1.0, 2.5, 3.5, 5.0, 6.2] {
         let expected = 3.0 * (1.0 - (turn / 2.0).cos());
         assert!((circle.chord_error(0.4, 0.4 + turn) - expected).abs() < 1e-13);
@@ -68,7 +67,7 @@ fn circles_are_exact() {
 #[test]
 fn derivative_bounds_hold() {
     let mut random = Random(32);
-    for (name, curve, range) in zoo::curves() {
+    for (name, curve, range) in fixtures::curves() {
         for _ in 0..50 {
             let a = random.within(range);
             let b = random.within(range);
@@ -107,13 +106,13 @@ fn closed_splines_are_bounded_across_their_seam() {
 proptest! {
     #[test]
     fn random_conics_keep_to_their_bound(a in 0.01f64..10.0, b in 0.01f64..10.0, t0 in -7.0f64..7.0, turn in 0.0f64..6.25) {
-        let ellipse = Curve::Ellipse { frame: zoo::frame(), a, b };
+        let ellipse = Curve::Ellipse { frame: fixtures::frame(), a, b };
         prop_assert!(ellipse.chord_error(t0, t0 + turn) >= sampled(&ellipse, t0, t0 + turn) - 1e-14);
         let (s0, s1) = (t0 * 0.4, t0 * 0.4 + turn * 0.5);
-        let hyperbola = Curve::Hyperbola { frame: zoo::frame(), a, b };
+        let hyperbola = Curve::Hyperbola { frame: fixtures::frame(), a, b };
         let truth = sampled(&hyperbola, s0, s1);
         prop_assert!(hyperbola.chord_error(s0, s1) >= truth * (1.0 - 1e-12) - 1e-14);
-        let parabola = Curve::Parabola { frame: zoo::frame(), focal: a };
+        let parabola = Curve::Parabola { frame: fixtures::frame(), focal: a };
         prop_assert!(parabola.chord_error(t0, t0 + turn) >= sampled(&parabola, t0, t0 + turn) - 1e-13);
     }
 }

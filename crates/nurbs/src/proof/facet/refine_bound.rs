@@ -4,7 +4,7 @@
 //! error is done with, because what may hide between them is known; the others are cut in four. Next to its largest error a
 //! facet so costs about as many points as the finest lattice has along an edge.
 
-use super::general::{Frame3, Modelled};
+use super::setting::{Modelled, Setting};
 use super::{Facet, lattice_point};
 use crate::SurfaceBounds;
 use glam::DVec3;
@@ -37,7 +37,7 @@ impl Errors {
 pub(super) struct Closer<'a, 'b> {
     pub bounds: &'a SurfaceBounds<'b>,
     pub facet: &'a Facet,
-    pub frame: &'a Frame3,
+    pub setting: &'a Setting,
     pub normal: &'a Modelled,
     pub weight: &'a Modelled,
     pub errors: &'a mut Errors,
@@ -80,7 +80,7 @@ impl Closer<'_, '_> {
 
     fn triangle(&mut self, corners: Corners<3>, step: usize, target: f64) -> Option<f64> {
         let parts = FINEST / step;
-        let between = self.normal.between(self.frame, parts);
+        let between = self.normal.between(self.setting, parts);
         let bound = self.local_bound(corners, parts, between, target)?;
         if bound <= target {
             return Some(bound);
@@ -98,7 +98,7 @@ impl Closer<'_, '_> {
 
     fn segment(&mut self, edge: usize, ends: Corners<2>, step: usize, target: f64) -> Option<f64> {
         let parts = FINEST / step;
-        let between = self.normal.between_on_edge(self.frame, edge, parts);
+        let between = self.normal.between_on_edge(self.setting, edge, parts);
         let bound = self.local_bound(ends, parts, between, target)?;
         if bound <= target {
             return Some(bound);
@@ -123,7 +123,7 @@ impl Closer<'_, '_> {
     ) -> Option<f64> {
         let shown = corners.iter().fold(0.0f64, |m, &corner| m.max(self.error(corner)));
         // Between samples the weight strays from linear by this share.
-        let grow = 1.0 + self.weight.between(self.frame, parts);
+        let grow = 1.0 + self.weight.between(self.setting, parts);
         (shown <= target).then_some((shown + between) * grow)
     }
 
@@ -136,7 +136,7 @@ impl Closer<'_, '_> {
         let uv = self.facet.uv[0] * w[0] + self.facet.uv[1] * w[1] + self.facet.uv[2] * w[2];
         let xyz = &self.facet.xyz;
         let on_facet: DVec3 = xyz[0] * w[0] + xyz[1] * w[1] + xyz[2] * w[2];
-        let error = (self.bounds.weighted_point(uv).0 - on_facet).dot(self.frame.n).abs();
+        let error = (self.bounds.weighted_point(uv).0 - on_facet).dot(self.setting.n).abs();
         // Not a number is no error that could be bounded.
         let error = if error.is_nan() { f64::INFINITY } else { error };
         self.errors.set(i, j, error);
