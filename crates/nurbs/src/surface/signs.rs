@@ -25,9 +25,11 @@ use std::f64::consts::PI;
 /// A surface with positive sizes, and what became of the parameters and of the normal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositiveSurface {
+    /// The surface with positive sizes.
     pub surface: Surface,
     /// The old parameters are multiplied by this, then moved by `shift`.
     pub factors: DVec2,
+    /// What is then added to them.
     pub shift: DVec2,
     /// The new normal Su × Sv points against the old one.
     pub reversed: bool,

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 fn sampled(curve: &Curve, t0: f64, t1: f64) -> f64 {
     let (a, b) = (curve.point(t0), curve.point(t1));
     (0..=400)
-        .map(|i| crate::segment_distance(curve.point(t0 + (t1 - t0) * f64::from(i) / 400.0), a, b))
+        .map(|i| segment_distance(curve.point(t0 + (t1 - t0) * f64::from(i) / 400.0), a, b))
         .fold(0.0, f64::max)
 }
 
