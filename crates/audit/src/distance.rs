@@ -13,7 +13,7 @@
 //! What is not farther than the largest distance seen so far, plus a precision, is done. Every cut either meets another
 //! triangle or halves a piece, and a piece as small as the precision is done, so it ends.
 
-use crate::triangle_tree::{TriangleTree, closest_point};
+use crate::triangle_tree::{Nearest, TriangleTree, closest_point};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -77,7 +77,7 @@ impl Search<'_> {
             pieces += 1;
             let center = piece.iter().sum::<DVec3>() / piece.len() as f64;
             let radius = piece.iter().fold(0.0f64, |m, p| m.max(p.distance(center)));
-            let Some((distance, nearest)) = self.to.nearest(center) else {
+            let Some(Nearest { distance, triangle: nearest, .. }) = self.to.nearest(center) else {
                 self.found.at_most = f64::INFINITY;
                 return;
             };

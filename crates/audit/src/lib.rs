@@ -32,4 +32,4 @@ mod triangle_tree;
 pub use distance::{Distance, largest_distance};
 pub use part::audit_part;
 pub use report::{AuditOptions, Claim, FaceAudit, FaceCrossing, PartAudit, Problem, ShellAudit, Subject};
-pub use triangle_tree::TriangleTree;
+pub use triangle_tree::{Nearest, TriangleTree};

@@ -8,8 +8,20 @@ const LEAF: usize = 4;
 /// Triangles prepared for many questions.
 #[derive(Debug)]
 pub struct TriangleTree {
-    triangles: Vec<[DVec3; 3]>,
+    /// In the order of the leaves, each with its place in the list that the tree was built from.
+    triangles: Vec<([DVec3; 3], u32)>,
     nodes: Vec<Node>,
+}
+
+/// The triangle of a tree that is nearest to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Its distance.
+    pub distance: f64,
+    /// Its corners.
+    pub triangle: [DVec3; 3],
+    /// Its place in the list that the tree was built from.
+    pub index: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +37,8 @@ struct Node {
 
 impl TriangleTree {
     /// Builds the tree.
-    pub fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
+    pub fn new(triangles: Vec<[DVec3; 3]>) -> Self {
+        let mut triangles: Vec<([DVec3; 3], u32)> = triangles.into_iter().zip(0..).collect();
         let mut nodes = Vec::with_capacity(triangles.len());
         if !triangles.is_empty() {
             build(&mut triangles, 0, &mut nodes);
@@ -38,10 +51,16 @@ impl TriangleTree {
         self.search(p, limit).0
     }
 
-    /// The nearest triangle and its distance; `None` where there is none.
-    pub fn nearest(&self, p: DVec3) -> Option<(f64, [DVec3; 3])> {
-        let (distance, triangle) = self.search(p, f64::INFINITY);
-        triangle.map(|t| (distance, self.triangles[t]))
+    /// The nearest triangle; `None` where there is none.
+    pub fn nearest(&self, p: DVec3) -> Option<Nearest> {
+        let (distance, place) = self.search(p, f64::INFINITY);
+        let (triangle, index) = self.triangles[place?];
+        Some(Nearest { distance, triangle, index: index as usize })
+    }
+
+    /// The closest point of one triangle, as [`TriangleTree::nearest`] names it.
+    pub fn closest_point(p: DVec3, triangle: [DVec3; 3]) -> DVec3 {
+        closest_point(p, triangle)
     }
 
     fn search(&self, p: DVec3, limit: f64) -> (f64, Option<usize>) {
@@ -56,7 +75,7 @@ impl TriangleTree {
             if node.second == 0 {
                 let range = node.first as usize..(node.first + node.count) as usize;
                 for index in range {
-                    let distance = closest_point(p, self.triangles[index]).distance_squared(p);
+                    let distance = closest_point(p, self.triangles[index].0).distance_squared(p);
                     if distance < best {
                         (best, found) = (distance, Some(index));
                     }
@@ -73,10 +92,10 @@ impl TriangleTree {
     }
 }
 
-fn build(triangles: &mut [[DVec3; 3]], first: usize, nodes: &mut Vec<Node>) {
-    let corners = || triangles.iter().flatten();
-    let min = corners().fold(DVec3::INFINITY, |m, p| m.min(*p));
-    let max = corners().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
+fn build(triangles: &mut [([DVec3; 3], u32)], first: usize, nodes: &mut Vec<Node>) {
+    let corners = || triangles.iter().flat_map(|t| t.0);
+    let min = corners().fold(DVec3::INFINITY, |m, p| m.min(p));
+    let max = corners().fold(DVec3::NEG_INFINITY, |m, p| m.max(p));
     let index = nodes.len();
     nodes.push(Node { min, max, first: first as u32, count: triangles.len() as u32, second: 0 });
     if triangles.len() <= LEAF {
@@ -84,7 +103,7 @@ fn build(triangles: &mut [[DVec3; 3]], first: usize, nodes: &mut Vec<Node>) {
     }
     let size = max - min;
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).expect("three axes");
-    let center = |t: &[DVec3; 3]| t[0][axis] + t[1][axis] + t[2][axis];
+    let center = |t: &([DVec3; 3], u32)| t.0[0][axis] + t.0[1][axis] + t.0[2][axis];
     let middle = triangles.len() / 2;
     triangles.select_nth_unstable_by(middle, |a, b| center(a).total_cmp(&center(b)));
     let (low, high) = triangles.split_at_mut(middle);

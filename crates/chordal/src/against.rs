@@ -2,22 +2,24 @@
 //!
 //! The model is meshed finely; vertices of that mesh lie on the exact surfaces, and its triangles within its proven
 //! error of them. Model → mesh: from these vertices to the nearest triangle of the mesh. Mesh → model: from samples of
-//! the mesh to the nearest fine triangle, right to within the fine mesh's proven error. Where every face is proven, branch and
-//! bound between the two meshes also says what no point can exceed.
+//! the mesh to the exact surface near the closest fine triangle ([`reference`]), so that the error of the fine mesh is
+//! not taken for one of the mesh. What the edges of the file lie off its surfaces is subtracted on both ways: no mesh
+//! can be nearer to both. Where every face is proven, branch and bound between the two meshes also gives distances that
+//! no point can exceed; these contain the error of the fine mesh and what the file is loose by.
+
+mod reference;
 
 use crate::job::read_model;
 use crate::meshed_part::{MeshedPart, mesh_parts};
-use crate::names::face_kind;
-use crate::report::entity_name;
 use crate::resolve::{Resolved, resolve};
 use crate::{JobError, JobOptions};
 use chordal_audit::{TriangleTree, largest_distance};
-use chordal_brep::Model;
 use chordal_mesh::TriangleSoup;
 use chordal_tessellate::Cancel;
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
+use reference::{PlacedFace, Reference};
 use std::path::Path;
 
 /// Samples of the mesh, about.
@@ -32,9 +34,10 @@ pub struct AgainstReport {
     /// "branch and bound": the distances lie between those measured at samples and `…_at_most`; "measured": largest
     /// distances over samples, which are lower bounds.
     pub method: String,
-    /// Largest distance of a sample of the mesh from the model, right to within `reference_error`.
+    /// Largest distance of a sample of the mesh from the model's exact faces, beyond the gap between edges and surfaces
+    /// that the file has there.
     pub mesh_to_model: f64,
-    /// Largest distance of a point of the model's exact faces from the mesh.
+    /// Largest distance of a sample of the model's exact faces from the mesh, beyond that gap.
     pub model_to_mesh: f64,
     /// No point of the mesh is farther from the model; `null` where a face of the model has no proof.
     pub mesh_to_model_at_most: Option<f64>,
@@ -75,14 +78,13 @@ pub fn measure_against(
     let parts = mesh_parts(&model, &resolved, &cancel, &|_| ());
     let mesh_triangles: Vec<[DVec3; 3]> =
         soup.triangles.iter().map(|t| t.map(|i| soup.positions[i as usize])).collect();
-    let fine_triangles = placed_triangles(&resolved, &parts);
     let mesh = TriangleTree::new(mesh_triangles.clone());
-    let fine = TriangleTree::new(fine_triangles.clone());
+    let reference = Reference::new(&model, &resolved, &parts);
 
     let samples = mesh_samples(soup);
-    let farthest = |tree: &TriangleTree, p: DVec3| tree.distance(p, f64::INFINITY);
-    let mesh_to_model = samples.par_iter().map(|&p| farthest(&fine, p)).reduce(|| 0.0, f64::max);
-    let mut faces = face_distances(&model, &resolved, &parts, &mesh);
+    let mesh_to_model = reference.farthest(&samples);
+    let mut faces: Vec<(WorstFace, usize)> =
+        reference.faces.par_iter().map(|face| worst_face(face, &mesh)).collect();
     let model_samples = faces.iter().map(|f| f.1).sum();
     faces.sort_by(|a, b| b.0.distance.total_cmp(&a.0.distance));
     let model_to_mesh = faces.first().map_or(0.0, |f| f.0.distance);
@@ -97,28 +99,14 @@ pub fn measure_against(
         method: if apart.is_some() { "branch and bound" } else { "measured" }.into(),
         mesh_to_model,
         model_to_mesh,
-        mesh_to_model_at_most: apart.map(|apart| at_most(&mesh_triangles, &fine, mesh_to_model, apart)),
-        model_to_mesh_at_most: apart.map(|apart| at_most(&fine_triangles, &mesh, model_to_mesh, apart)),
+        mesh_to_model_at_most: apart.map(|apart| at_most(&mesh_triangles, &reference.tree, mesh_to_model, apart)),
+        model_to_mesh_at_most: apart.map(|apart| at_most(&reference.triangles, &mesh, model_to_mesh, apart)),
         reference_error: reference_error(&resolved, &parts),
         mesh_samples: samples.len(),
         model_samples,
         faces_not_compared,
         worst_faces: faces.into_iter().map(|f| f.0).take(WORST).collect(),
     })
-}
-
-fn placed_triangles(resolved: &Resolved, parts: &[MeshedPart]) -> Vec<[DVec3; 3]> {
-    let mut triangles = Vec::new();
-    for (part, part_use) in parts.iter().zip(&resolved.uses) {
-        for world in &part_use.worlds {
-            let at = |i: u32| world.transform_point3(part.mesh.positions[i as usize]);
-            for face in &part.mesh.faces {
-                triangles
-                    .extend(face.triangles.iter().map(|t| t.map(|c| at(face.corners[c as usize].position))));
-            }
-        }
-    }
-    triangles
 }
 
 /// Vertices, and points inside triangles as densely as the number of samples allows.
@@ -141,34 +129,10 @@ fn mesh_samples(soup: &TriangleSoup) -> Vec<DVec3> {
     samples
 }
 
-/// Every placed face with triangles: its distance from the mesh, and the number of its samples.
-fn face_distances(
-    model: &Model,
-    resolved: &Resolved,
-    parts: &[MeshedPart],
-    mesh: &TriangleTree,
-) -> Vec<(WorstFace, usize)> {
-    let mut found = Vec::new();
-    for ((part, meshed), part_use) in model.parts.iter().zip(parts).zip(&resolved.uses) {
-        for world in &part_use.worlds {
-            let of_part =
-                part.faces.par_iter().zip(&meshed.mesh.faces).filter(|(_, m)| !m.triangles.is_empty());
-            found.par_extend(of_part.map(|(face, face_mesh)| {
-                let points = face_mesh.corners.iter().map(|c| meshed.mesh.positions[c.position as usize]);
-                let distance = points
-                    .map(|p| mesh.distance(world.transform_point3(p), f64::INFINITY))
-                    .fold(0.0, f64::max);
-                let worst = WorstFace {
-                    id: entity_name(face.source).unwrap_or_default(),
-                    kind: face_kind(face).into(),
-                    part: part.name.clone(),
-                    distance,
-                };
-                (worst, face_mesh.corners.len())
-            }));
-        }
-    }
-    found
+/// The distance of a placed face from the mesh, and the number of its samples.
+fn worst_face(face: &PlacedFace<'_>, mesh: &TriangleTree) -> (WorstFace, usize) {
+    let (distance, samples) = face.distance_from(mesh);
+    (WorstFace { id: face.id(), kind: face.kind(), part: face.part.name.clone(), distance }, samples)
 }
 
 /// The largest distance of the fine mesh from the exact faces, and the other way round: proven error and gap.
