@@ -18,8 +18,8 @@ use chordal_mesh::TriangleSoup;
 use chordal_tessellate::Cancel;
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
 use reference::{PlacedFace, Reference};
+use serde::Serialize;
 use std::path::Path;
 
 /// Samples of the mesh, about.
@@ -99,7 +99,8 @@ pub fn measure_against(
         method: if apart.is_some() { "branch and bound" } else { "measured" }.into(),
         mesh_to_model,
         model_to_mesh,
-        mesh_to_model_at_most: apart.map(|apart| at_most(&mesh_triangles, &reference.tree, mesh_to_model, apart)),
+        mesh_to_model_at_most: apart
+            .map(|apart| at_most(&mesh_triangles, &reference.tree, mesh_to_model, apart)),
         model_to_mesh_at_most: apart.map(|apart| at_most(&reference.triangles, &mesh, model_to_mesh, apart)),
         reference_error: reference_error(&resolved, &parts),
         mesh_samples: samples.len(),
