@@ -16,6 +16,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from brep_text import Brep
+from iges_text import Iges
 from part21 import Point, Step, Use, cross, unit, write_sheet, write_solid
 
 FOLDER = Path(__file__).resolve().parent.parent / "region"
@@ -444,6 +446,59 @@ def no_length(rng: random.Random | None) -> Model:
     return "", a * b, write
 
 
+def no_radius(rng: random.Random | None) -> Model:
+    """A disc, and beside it a cylinder without a radius between two circles without one."""
+    r = rng.uniform(2, 20) if rng else 8.0
+
+    def write(path: Path) -> None:
+        s = Step(path.stem)
+        f = turned(rng)
+        disc = s.disc(s.ring(f.o, f.z, f.x, r), True, f.o, f.z, f.x)
+        rings = []
+        for h in (0.0, r):
+            p = f.at(2 * r, 0, h)
+            rings.append(s.edge(p, p, s.circle(p, f.z, f.x, 0.0)))
+        bounds = [s.bound(s.loop([(rings[0], True)]), outer=True), s.bound(s.loop([(rings[1], False)]))]
+        needle = s.face(bounds, s.elementary("CYLINDRICAL_SURFACE", f.at(2 * r, 0, 0), f.z, f.x, 0.0))
+        write_sheet(s, [disc, needle], path)
+
+    return "", math.pi * r * r, write
+
+
+def band_iges(path: Path, kind: int, sizes: tuple[float, ...], ring: Ring, span: tuple[float, float]) -> None:
+    """A band of a torus (198) or a sphere (196) between two circles without curves of parameters."""
+    g = Iges()
+    center, axis = g.add(116, 0.0, 0.0, 0.0, 0), g.add(123, 0.0, 0.0, 1.0)
+    surface = g.add(kind, center, axis, *sizes) if kind == 198 else g.add(kind, center, *sizes)
+    circles = [g.circle((0.0, 0.0), abs(ring.rho(v)), ring.height(v)) for v in span]
+    g.trimmed(surface, *[g.boundary(surface, 0, circle, 2) for circle in circles])
+    path.write_text(g.text(), encoding="ascii")
+
+
+def band_brep(path: Path, kind: int, sizes: tuple[float, ...], ring: Ring, span: tuple[float, float]) -> None:
+    """The same as a face of a BREP file, of kind 5 (torus) or 4 (sphere)."""
+    b = Brep()
+    axes = ((0, 0, 1), (1, 0, 0), (0, 1, 0))
+    surface = b.surface(kind, (0, 0, 0), *axes, *sizes)
+    wires = []
+    for v, sign in zip(span, "+-"):
+        radius, height = abs(ring.rho(v)), ring.height(v)
+        circle = b.curve(2, (0, 0, height), *axes, radius)
+        vertex = b.vertex((radius, 0, height))
+        wires.append(b.wire((sign, b.edge((vertex, vertex), circle, (0, TAU)), 0)))
+    face = b.face(surface, *wires)
+    path.write_text(b.text(b.shell(("+", face, 0), closed=False)), encoding="ascii")
+
+
+# Other formats: (file, what it tests, kind of the surface, sizes, the surface, the range of v).
+OTHERS = [
+    ("lemon_negative.igs", "a band of a lemon torus in IGES", 198, (-2.0, 8.0), torus(-2, 8), (-0.4, 0.9)),
+    ("sphere_negative.igs", "a sphere with a negative radius in IGES", 196, (-8.0,), sphere(-8), (-0.4, 0.9)),
+    ("lemon_negative.brep", "a band of a lemon torus in BREP", 5, (-2.0, 8.0), torus(-2, 8), (-0.4, 0.9)),
+    ("sphere_negative.brep", "a sphere with a negative radius in BREP", 4, (-8.0,), sphere(-8), (-0.4, 0.9)),
+]
+
+
 KINDS: dict[str, tuple[str, Callable[[random.Random | None], Model]]] = {
     "lemon_negative": ("a band of a lemon torus, its major radius negative", lemon),
     "apple_band": ("a band of an apple torus", apple),
@@ -459,28 +514,34 @@ KINDS: dict[str, tuple[str, Callable[[random.Random | None], Model]]] = {
     "torus_blocked": ("a whole torus with windows in the way of every straight cut", ring_blocked),
     "sliver_on_edge": ("a box with a face of no area between two edges that coincide", sliver),
     "edge_folded": ("a closed edge that returns on its own way", folded_edge),
+    "cylinder_without_radius": ("a cylinder with a radius of zero", no_radius),
     "edge_without_length": ("an edge of no length and one that runs back over its neighbour", no_length),
 }
 
 
 def write_all(folder: Path) -> None:
     folder.mkdir(exist_ok=True)
-    rows = ["name\ttests\tarea\tmade_by"]
+    rows = ["file\ttests\tarea\tmade_by"]
     for name, (tests, make) in KINDS.items():
         _, area, write = make(None)
         write(folder / f"{name}.step")
-        rows.append(f"{name}\t{tests}\t{area:.9g}\tregion.{make.__name__}")
+        rows.append(f"{name}.step\t{tests}\t{area:.9g}\tregion.{make.__name__}")
+    for file, tests, kind, sizes, ring, span in OTHERS:
+        band = band_iges if file.endswith(".igs") else band_brep
+        band(folder / file, kind, sizes, ring, span)
+        area = Band(ring, *span, span).area()
+        rows.append(f"{file}\t{tests}\t{area:.9g}\tregion.{band.__name__}")
     (folder / "INDEX.tsv").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
 def write_variants(folder: Path, count: int) -> None:
     folder.mkdir(exist_ok=True, parents=True)
-    rows = ["name\ttests\tarea\tmade_by"]
+    rows = ["file\ttests\tarea\tmade_by"]
     for name, (tests, make) in KINDS.items():
         for k in range(count):
             _, area, write = make(random.Random(f"{name}{k}"))
             write(folder / f"{name}_{k}.step")
-            rows.append(f"{name}_{k}\t{tests}\t{area:.9g}\tregion.{make.__name__}")
+            rows.append(f"{name}_{k}.step\t{tests}\t{area:.9g}\tregion.{make.__name__}")
     (folder / "INDEX.tsv").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 

@@ -28,7 +28,7 @@ fn every_face_has_its_area() {
     let mut faults = Vec::new();
     for (name, area) in models {
         for share in [0.001, 0.0002] {
-            let path = folder().join(&name).with_extension("step");
+            let path = folder().join(&name);
             let options = JobOptions::default().with_tolerance(Tolerance::Percent(100.0 * share));
             let report = match chordal::run(&Job::new(path).with_options(options)) {
                 Ok(outcome) => outcome.report,

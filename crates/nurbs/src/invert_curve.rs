@@ -149,7 +149,16 @@ pub(crate) struct Seeds {
     stops: Vec<f64>,
     /// Mean distance of neighbouring samples.
     spacing: f64,
+    /// A place found near the last one is taken where it is as near to the point as this.
+    near_enough: f64,
 }
+
+/// The share of the spacing of the samples within which a place is near enough.
+const NEAR_ENOUGH: f64 = 1e-3;
+
+/// Ellipses are needles where their half axes differ by more than this: both of their sides are then nearer to a point
+/// than its place along the curve tells.
+const NEEDLE: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug)]
 struct Seed {
@@ -181,7 +190,11 @@ impl Seeds {
         }
         let length: f64 = samples.windows(2).map(|s| s[0].p.distance(s[1].p)).sum();
         let spacing = length / (samples.len().max(2) - 1) as f64;
-        Self { samples, stops, spacing }
+        let width = match curve {
+            Curve::Ellipse { a, b, .. } => (NEEDLE * a.abs().min(b.abs()) / a.abs().max(b.abs())).min(1.0),
+            _ => 1.0,
+        };
+        Self { samples, stops, spacing, near_enough: NEAR_ENOUGH * spacing * width }
     }
 
     /// The minimum of the residual's length. `of` gives the residual of a sample, `residual` that of a parameter with
@@ -196,7 +209,7 @@ impl Seeds {
             let piece = self.piece_of(t);
             descend(&residual, t, Range::new(self.stops[piece], self.stops[piece + 1]))
         });
-        if let Some(found) = local.filter(|f| f.distance <= 1e-3 * self.spacing) {
+        if let Some(found) = local.filter(|f| f.distance <= self.near_enough) {
             return found;
         }
         let mut best = local.unwrap_or(CurveInversion { t: self.stops[0], distance: f64::INFINITY });

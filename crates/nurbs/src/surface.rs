@@ -172,6 +172,15 @@ impl Surface {
         }
     }
 
+    /// False for elementary surfaces with a radius of zero: a line, a circle or a point.
+    pub fn has_area(&self) -> bool {
+        match self {
+            Surface::Cylinder { radius, .. } | Surface::Sphere { radius, .. } => *radius != 0.0,
+            Surface::Torus { minor, .. } => *minor != 0.0,
+            _ => true,
+        }
+    }
+
     /// The kind without the data.
     pub fn kind(&self) -> SurfaceKind {
         match self {

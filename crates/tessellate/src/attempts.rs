@@ -48,11 +48,15 @@ fn attempt(
 ) -> Result<Box<FaceResult>, Setback> {
     let deadline = options.face_timeout.and_then(Deadline::after);
     let edges_are_final = effort.has(Remedy::CrossingLoops);
-    // 1. Unroll the face into one chart.
+    // A face without area has no triangles, and its neighbours meet where it lies.
+    let nothing = || Ok(Box::new(FaceResult { bound: "no area", ..FaceResult::default() }));
+    if !context.surface.surface.has_area() {
+        return nothing();
+    }
+    // 1. Unroll the face into one chart; its loops may enclose nothing.
     let chart = Chart::new(context, limits, effort.seam_chord(), !effort.has(Remedy::UncutCreases))?;
     if chart.loops.is_empty() {
-        // Its loops enclose nothing: the face has no triangles, and its neighbours meet where it lies.
-        return Ok(Box::new(FaceResult { bound: "no area", ..FaceResult::default() }));
+        return nothing();
     }
     // 2. Triangulate its loops.
     let points: Vec<DVec2> = chart.points.iter().map(|p| p.uv).collect();

@@ -74,7 +74,10 @@ impl Geometry<'_> {
             }
             Kw::Circle => {
                 let frame = self.frame(args.reference()?)?;
-                Ok(Curve::Circle { frame, radius: self.size(ix, "radius", args.real()?)? })
+                // Without a radius it is a point: an edge along it has no length.
+                let radius = args.real()?;
+                let radius = if radius == 0.0 { radius } else { self.size(ix, "radius", radius)? };
+                Ok(Curve::Circle { frame, radius })
             }
             Kw::Ellipse => {
                 let frame = self.frame(args.reference()?)?;

@@ -37,20 +37,21 @@ impl Geometry<'_> {
         let mut args = doc.open(ix)?;
         args.skip(1);
         match kw {
+            // Sizes keep their signs, see [`crate::settle_surfaces`]; a surface with a radius of zero has no area.
             Kw::Plane => Ok(Surface::Plane { frame: self.frame(args.reference()?)? }),
             Kw::CylindricalSurface => {
                 let frame = self.frame(args.reference()?)?;
-                Ok(Surface::Cylinder { frame, radius: self.radius(ix, "radius", args.real()?)? })
+                Ok(Surface::Cylinder { frame, radius: args.real()? })
             }
             Kw::ConicalSurface => self.cone(ix, args),
             Kw::SphericalSurface => {
                 let frame = self.frame(args.reference()?)?;
-                Ok(Surface::Sphere { frame, radius: self.radius(ix, "radius", args.real()?)? })
+                Ok(Surface::Sphere { frame, radius: args.real()? })
             }
             Kw::ToroidalSurface | Kw::DegenerateToroidalSurface => {
                 let frame = self.frame(args.reference()?)?;
                 let major = args.real()?;
-                Ok(Surface::Torus { frame, major, minor: self.radius(ix, "minor radius", args.real()?)? })
+                Ok(Surface::Torus { frame, major, minor: args.real()? })
             }
             Kw::SurfaceOfLinearExtrusion => {
                 let profile = self.curve(args.reference()?)?;
@@ -74,15 +75,6 @@ impl Geometry<'_> {
         }
     }
 
-    /// A radius of a surface. Negative ones keep their sign, see [`crate::settle_surfaces`]; zero is refused.
-    fn radius(&self, ix: Ix, what: &'static str, value: f64) -> Res<f64> {
-        if value == 0.0 {
-            Err(self.doc.bad(ix, ReadIssue::BadValue { what, value: Real(0.0) }))
-        } else {
-            Ok(value)
-        }
-    }
-
     /// CONICAL_SURFACE(name, position, radius, semi_angle). A negative angle opens the other way.
     fn cone(&mut self, ix: Ix, mut args: Args<'_>) -> Res<Surface> {
         let frame = self.frame(args.reference()?)?;
@@ -90,7 +82,7 @@ impl Geometry<'_> {
         let half_angle = args.real()? * self.units.angle_rad;
         if half_angle == 0.0 {
             self.doc.warn(ix, ReadIssue::ConeIsCylinder);
-            return Ok(Surface::Cylinder { frame, radius: self.radius(ix, "radius", radius)? });
+            return Ok(Surface::Cylinder { frame, radius });
         }
         Ok(Surface::Cone { frame, radius, half_angle })
     }
