@@ -1,10 +1,11 @@
 //! The parts that methods of cutting edges are made of.
 //!
-//! Source: Balázs, Guthe, Klein 2004, sections 4 and 5.1: the trimming curve in the plane of parameters becomes Bézier
-//! pieces that are cut at the knot lines of the surface, lifted into space and approximated there; or, as in the method
-//! that the document compares with (Kahlesz, Balázs, Klein 2001), approximated in the plane, leaf by leaf of a quadtree.
-//! What comes out are parameters on the one shared edge. Every chord is then proven against the model's own curve as any
-//! other, so a file whose curves in the plane are loose costs chords and not the tolerance.
+//! Source: Balázs, Guthe, Klein 2004, sections 4 and 5.1: the trimming curve in the plane of parameters
+//! becomes Bézier pieces that are cut at the knot lines of the surface, lifted into space and approximated
+//! there; or, as in the method that the document compares with (Kahlesz, Balázs, Klein 2001), approximated in
+//! the plane, leaf by leaf of a quadtree. What comes out are parameters on the one shared edge. Every chord
+//! is then proven against the model's own curve as any other, so a file whose curves in the plane are loose
+//! costs chords and not the tolerance.
 
 #[cfg(test)]
 mod budget_tests;
@@ -85,7 +86,8 @@ pub fn in_space(
 /// Where every face that uses the edge wants a vertex.
 pub fn in_plane(edge: &EdgePiece<'_>, uses: &[EdgeUse<'_, '_>], trace: &mut Trace) -> Option<Vec<f64>> {
     let mut all = Vec::new();
-    // Where a side of the surface is one point, leaves stretch lengths without limit: such faces follow the edge's others.
+    // Where a side of the surface is one point, leaves stretch lengths without limit: such faces follow the
+    // edge's others.
     for one in uses.iter().filter(|one| one.surface.poles.is_empty()) {
         let Some(curve) = TrimmingCurve::new(edge, one) else { continue };
         let stops = in_plane::stops(&curve, edge.tolerance)?;
@@ -97,8 +99,8 @@ pub fn in_plane(edge: &EdgePiece<'_>, uses: &[EdgeUse<'_, '_>], trace: &mut Trac
     (!all.is_empty()).then(|| without_slivers(increasing(all, edge.range)))
 }
 
-/// Without vertices nearer to the one before, or to the end, than a tenth of the tolerance: parameters of points so near
-/// to each other are not told apart safely on the faces.
+/// Without vertices nearer to the one before, or to the end, than a tenth of the tolerance: parameters of
+/// points so near to each other are not told apart safely on the faces.
 fn without_specks(edge: &EdgePiece<'_>, stops: Vec<f64>) -> Vec<f64> {
     let least = TURN_LENGTH * edge.tolerance;
     let end = edge.curve.point(edge.range.end);
@@ -130,7 +132,8 @@ fn parameters_of(edge: &EdgePiece<'_>, points: &[DVec3], guesses: &[f64]) -> Vec
         .collect()
 }
 
-/// Uses with a curve of the file first, spline surfaces before others: what is lifted should be the file's own.
+/// Uses with a curve of the file first, spline surfaces before others: what is lifted should be the file's
+/// own.
 fn best_first<'u, 'a, 's>(uses: &'u [EdgeUse<'a, 's>]) -> Vec<&'u EdgeUse<'a, 's>> {
     let mut sorted: Vec<&EdgeUse<'_, '_>> = uses.iter().collect();
     sorted.sort_by_key(|one| {

@@ -10,7 +10,8 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EdgeMethod {
-    /// Trimming curves approximated in the plane of parameters, over each leaf of a quadtree by what the leaf stretches lengths.
+    /// Trimming curves approximated in the plane of parameters, over each leaf of a quadtree by what the leaf
+    /// stretches lengths.
     Bezier2d,
     /// Trimming curves lifted into space and approximated there.
     Bezier3d {

@@ -1,7 +1,8 @@
 //! The parts that methods of filling faces are made of.
 //!
-//! A method is a choice of parts: how a face is subdivided ([`cells`] and a rule each), how the subdivision is cut with the
-//! loops ([`borders`], [`cut`], [`constrain`]), and how the polygons become triangles ([`half_edges`], [`polygons`]).
+//! A method is a choice of parts: how a face is subdivided ([`cells`] and a rule each), how the subdivision
+//! is cut with the loops ([`borders`], [`cut`], [`constrain`]), and how the polygons become triangles
+//! ([`half_edges`], [`polygons`]).
 
 pub mod bezier;
 mod borders;

@@ -1,7 +1,7 @@
 //! Published methods of tessellating trimmed surfaces, as plug-ins of `chordal-tessellate`.
 //!
-//! A [`Strategy`] fills the inside of faces; an [`EdgeMethod`] cuts edges into chords. Both share the proof and the
-//! stitching of the default mesher. [`strategies`] and [`edge_methods`] list them by name.
+//! A [`Strategy`] fills the inside of faces; an [`EdgeMethod`] cuts edges into chords. Both share the proof
+//! and the stitching of the default mesher. [`strategies`] and [`edge_methods`] list them by name.
 
 mod edge;
 mod edge_method;

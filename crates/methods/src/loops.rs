@@ -1,7 +1,8 @@
 //! The trimming loops of faces as the document makes them: each face its own, whole loops simplified.
 //!
-//! Source: Balázs, Guthe, Klein 2004, Table 2. Meshes share edges between faces and keep the model's vertices; these loops do
-//! neither. They show what the conversions and approximations cost and yield by themselves.
+//! Source: Balázs, Guthe, Klein 2004, Table 2. Meshes share edges between faces and keep the model's
+//! vertices; these loops do neither. They show what the conversions and approximations cost and yield by
+//! themselves.
 
 use crate::edge::curve::TrimmingCurve;
 use crate::edge::simplify::simplified;
@@ -29,7 +30,8 @@ pub struct LoopRow {
     pub left_out: usize,
 }
 
-/// Converts and approximates every trimming loop of the part by every method, within `tolerance` in the part's units.
+/// Converts and approximates every trimming loop of the part by every method, within `tolerance` in the
+/// part's units.
 pub fn loop_rows(part: &Part, tolerance: f64, methods: &[EdgeMethod]) -> Vec<LoopRow> {
     let resolution = resolution(part, tolerance);
     let row = |&method: &EdgeMethod| {

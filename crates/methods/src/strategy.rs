@@ -22,20 +22,23 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Strategy {
-    /// A kd-tree whose direction of cutting is chosen at the worst point (Balázs, Guthe, Klein 2004, section 5.2).
+    /// A kd-tree whose direction of cutting is chosen at the worst point (Balázs, Guthe, Klein 2004, section
+    /// 5.2).
     Kd(Cut),
     /// Binary subdivision across the direction that bends more (the same section).
     Binary(Cut),
     /// One grid for the whole face (survey of the Blender wiki, "Uniform Grid Cut").
     UniformGrid,
-    /// A fixed number of cells per control cell and direction, 0 for as many as the bound asks for (the same survey,
-    /// "direct tessellation").
+    /// A fixed number of cells per control cell and direction, 0 for as many as the bound asks for (the same
+    /// survey, "direct tessellation").
     ControlCells { per_cell: u32 },
-    /// Bézier patches halved by a bound from their derivative patches (the same survey, "Recursive Subdivision").
+    /// Bézier patches halved by a bound from their derivative patches (the same survey, "Recursive
+    /// Subdivision").
     Recursive,
     /// Bézier patches cut into four (Kahlesz, Balázs, Klein 2001, sections 4, 6 and 7).
     Quadtree(Stretch),
-    /// A grid inside, joined to the boundary by triangles between them (survey of the Blender wiki, "Coving").
+    /// A grid inside, joined to the boundary by triangles between them (survey of the Blender wiki,
+    /// "Coving").
     Coving,
     /// Bézier patches as quadrilaterals (Ma, Hewitt 2002).
     Bezier,

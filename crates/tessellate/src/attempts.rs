@@ -75,7 +75,8 @@ fn attempt(
         prover = prover.for_crossing_loops();
     }
     let mut proof = fill_and_prove(&mut face, &mut prover, options, edges_are_final)?;
-    // 4. A triangle that is turned over may lie outside of the face, which no distance to the surface would show.
+    // 4. A triangle that is turned over may lie outside of the face, which no distance to the surface would
+    //    show.
     if are_loops_crossing && face.is_turned_somewhere() {
         proof = Proof { error: f64::INFINITY, bound: "none" };
     } else if !edges_are_final {

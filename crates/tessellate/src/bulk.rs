@@ -1,8 +1,9 @@
-//! Many points of one surface at once, by whoever can: the seam to devices other than this thread.
+//! Evaluation of many points of one surface at once, by a device if there is one.
 //!
-//! Where a strategy knows its points before it connects them, it says so ([`Foreseen::ask`]), and an [`BulkEvaluator`] may find
-//! positions and derivatives of all of them together. What comes back places vertices and sizes triangles; what is proven
-//! of them is found here, in double precision, as ever.
+//! A method that knows its points before it connects them announces them ([`Foreseen::ask`]); an
+//! [`BulkEvaluator`] may then compute positions and derivatives of all of them together. Its results place
+//! vertices and shape triangles. Proofs never use them: bounds are computed on this thread, in double
+//! precision.
 
 use crate::surface::FaceSurface;
 use chordal_nurbs::{BulkEvaluator, DVec2, Surface, SurfaceJet};
@@ -19,7 +20,7 @@ impl Bulk {
     }
 }
 
-/// The same evaluator, not one that gives the same points.
+/// True for the same evaluator object; two objects that give the same points differ.
 impl PartialEq for Bulk {
     fn eq(&self, other: &Self) -> bool {
         match (&self.0, &other.0) {
@@ -29,7 +30,7 @@ impl PartialEq for Bulk {
     }
 }
 
-/// Jets of one face that are known before they are asked for.
+/// Points and derivatives of one face that were evaluated in advance.
 #[derive(Debug, Default)]
 pub(crate) struct Foreseen {
     bulk: Bulk,
@@ -45,7 +46,7 @@ impl Foreseen {
         Self { bulk: bulk.clone(), jets: FxHashMap::default() }
     }
 
-    /// Says that these points of a chart will be wanted.
+    /// Announces points of a chart that will be needed.
     pub fn ask(&mut self, surface: &FaceSurface<'_>, points: impl Iterator<Item = DVec2>) {
         let (Some(evaluator), Surface::Nurbs(spline)) = (&self.bulk.0, surface.surface) else { return };
         let domain = spline.domain();
@@ -55,9 +56,9 @@ impl Foreseen {
         self.jets = charted.into_iter().map(key).zip(found.into_iter().flatten()).collect();
     }
 
-    /// The jet at a point of the chart.
+    /// Point and derivatives at a point of the chart.
     pub fn jet(&self, surface: &FaceSurface<'_>, p_uv: DVec2) -> SurfaceJet {
-        // Without a device there is nothing to look for.
+        // Without a device no lookup is needed.
         let known = if self.jets.is_empty() { None } else { self.jets.get(&key(p_uv)) };
         known.copied().unwrap_or_else(|| surface.jet(p_uv))
     }

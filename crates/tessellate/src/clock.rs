@@ -1,7 +1,7 @@
 //! Time, where the platform has a clock: stopwatches of CPU time, and deadlines.
 //!
-//! On `wasm32-unknown-unknown` there is no clock and reading one panics. There every stopwatch shows zero and no deadline
-//! passes.
+//! On `wasm32-unknown-unknown` there is no clock and reading one panics. There every stopwatch shows zero and
+//! no deadline passes.
 
 use std::time::Duration;
 
@@ -32,8 +32,8 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// CPU time of this thread; it must be read by the same one. On a machine with other work, wall time would show how
-    /// busy the machine is.
+    /// CPU time of this thread; it must be read by the same one. On a machine with other work, wall time
+    /// would show how busy the machine is.
     pub fn of_thread() -> Self {
         Self::new(Kind::Thread)
     }
@@ -52,7 +52,8 @@ impl Stopwatch {
         Self { kind, cpu: cpu_seconds(kind), wall: now() }
     }
 
-    /// Seconds since it was made; wall time where the system does not tell CPU time, zero where it has no clock.
+    /// Seconds since it was made; wall time where the system does not tell CPU time, zero where it has no
+    /// clock.
     pub fn seconds(&self) -> f64 {
         let cpu = cpu_seconds(self.kind).zip(self.cpu).map(|(now, then)| now - then);
         cpu.unwrap_or_else(|| self.wall.map_or(0.0, |wall| wall.elapsed().as_secs_f64()))

@@ -1,5 +1,5 @@
-//! The default way to fill a face: better shaped triangles from the boundary, and staggered rows of points where the
-//! surface is curved both ways.
+//! The default way to fill a face: better shaped triangles from the boundary, and staggered rows of points
+//! where the surface is curved both ways.
 
 use crate::face_mesh::{FaceMesh, Shape};
 use crate::metric::Metric;
@@ -7,8 +7,8 @@ use crate::rows::Rows;
 use crate::triangulate::{Location, NONE};
 use chordal_nurbs::DVec2;
 
-/// No point is placed nearer than this to a corner of its triangle, in allowed chords. Rows lie 3/4 apart or more; a
-/// point nearer than this makes triangles much smaller than allowed.
+/// No point is placed nearer than this to a corner of its triangle, in allowed chords. Rows lie 3/4 apart or
+/// more; a point nearer than this makes triangles much smaller than allowed.
 const CORNER_DISTANCE: f64 = 0.45;
 
 /// The same for the distance from an edge of the boundary, which is a height of a triangle.

@@ -1,6 +1,8 @@
-//! An edge as the faces beside it see it: where on their surfaces it runs, and how short they need its chords.
+//! An edge as seen from the faces that use it: where on their surfaces it runs, and how short they need its
+//! chords.
 //!
-//! A method of another crate may choose the chords of edges: it implements [`EdgeSplitter`] over an [`EdgePiece`].
+//! A method of another crate may choose the chords of edges: it implements [`EdgeSplitter`] over an
+//! [`EdgePiece`].
 
 use crate::limits::Limits;
 use crate::metric::Sizing;
@@ -15,8 +17,9 @@ pub trait EdgeSplitter: Debug + Send + Sync {
     /// The name in reports.
     fn name(&self) -> &str;
 
-    /// Increasing parameters of the vertices along a piece of an edge, both ends of its range included. `None`: the
-    /// default method cuts this piece. Chords that are too far off the curve are halved afterwards.
+    /// Increasing parameters of the vertices along a piece of an edge, both ends of its range included.
+    /// `None`: the default method cuts this piece. Chords that are too far off the curve are halved
+    /// afterwards.
     fn parameters(
         &self,
         piece: &EdgePiece<'_>,
@@ -24,8 +27,8 @@ pub trait EdgeSplitter: Debug + Send + Sync {
         trace: &mut Trace,
     ) -> Option<Vec<f64>>;
 
-    /// True for a method that approximates curves in space. Methods that fill faces then leave the chords of edges
-    /// alone, and use the whole tolerance for the surface.
+    /// True for a method that approximates curves in space. Methods that fill faces then leave the chords of
+    /// edges alone, and use the whole tolerance for the surface.
     fn is_in_space(&self) -> bool {
         false
     }
@@ -49,15 +52,15 @@ pub struct EdgePiece<'a> {
 pub struct EdgeUse<'a, 's> {
     pub surface: &'a FaceSurface<'s>,
     pub pcurve: Option<&'a Pcurve>,
-    /// The diagonal of the box of the face's vertices: how far the face may reach across the edge.
+    /// The diagonal of the box of the face's edges: how far the face may reach across this edge.
     pub reach: f64,
 }
 
-/// Chords along a doubly curved face are this much shorter than allowed: a triangle over a full chord could not reach
-/// across it by any height.
+/// Chords along a doubly curved face have this share of the allowed length. A triangle over a full chord
+/// would be over the tolerance at any height.
 const DOUBLY_CURVED_CHORD: f64 = 0.9;
 
-/// Where on a face's surface the last probe was and how fast the curve moved there.
+/// Where the last probe lay on the surface of a face, and how fast the curve moved there.
 #[derive(Clone, Copy)]
 pub(crate) struct Track {
     t: f64,
@@ -65,15 +68,16 @@ pub(crate) struct Track {
     rate: DVec2,
 }
 
-/// A probe is followed from the last one where the surface passes it within this share of the way.
+/// A probe is found by one step from the last one if that step misses the curve by at most this share of its
+/// length. Otherwise the whole surface is searched, which is slower by far.
 const ON_TRACK: f64 = 0.1;
 
 /// Places along an edge at which its parameter curve is compared with it.
 const PACE_CHECKS: u32 = 8;
 
 impl EdgeUse<'_, '_> {
-    /// Without the parameter curve where that does not run at the edge's own pace, though both may be one line: equal
-    /// shares of the two are then different places.
+    /// The same use without the parameter curve, if that runs at another pace than the edge: equal shares of
+    /// the two are then different places, although both may be the same line.
     pub(crate) fn paced(self, edge: &Edge, tolerance: f64) -> Self {
         let (Some(curve), Some(_), false) =
             (edge.curve.as_deref(), self.pcurve, self.surface.is_elementary())
@@ -90,7 +94,8 @@ impl EdgeUse<'_, '_> {
         Self { pcurve: self.pcurve.filter(|_| !strays), ..self }
     }
 
-    /// Where on the face the point at `t` lies: by the file, where it says so, else the nearest point's parameters.
+    /// The parameters of the point at `t`: by the file's parameter curve if there is one, else those of the
+    /// nearest point of the surface.
     pub(crate) fn parameters(&self, p_xyz: DVec3, t: f64, range: Range, near: Option<Near>) -> Near {
         let from_file = self.pcurve.filter(|_| !self.surface.is_elementary()).map(|p| {
             let share = (t - range.start) / range.length();
@@ -100,7 +105,7 @@ impl EdgeUse<'_, '_> {
         from_file.map_or_else(|| self.surface.invert_from(p_xyz, near), Near::on_surface)
     }
 
-    /// Chords per unit of parameter that the face asks for.
+    /// Chords per unit of parameter that the face needs.
     pub(crate) fn rate(
         &self,
         jet: &CurveJet,
@@ -116,18 +121,18 @@ impl EdgeUse<'_, '_> {
         // The direction in parameter space that maps to the curve's tangent, by least squares.
         let d = least_squares(&s, jet.d1);
         *track = Some(Track { t, place, rate: d });
-        // An edge that lies off the surface does not say which wrinkle of it is meant.
+        // Where the edge lies off the surface, it is unknown which of two folds is meant.
         let off = s.p.distance(jet.p);
         let Some(sizing) = Sizing::known_within(&s, limits, off) else { return 0.0 };
         let rate = sizing.metric.length(d);
-        // Across the edge the face curves, too, and far enough for a second row.
+        // The face is curved across the edge as well, and reaches far enough for a second row of triangles.
         let across = sizing.metric.determinant().max(0.0).sqrt() / sizing.area.max(1e-300) * jet.d1.length()
             / rate.max(1e-300);
         let doubly = sizing.gauss > 0.0 && across * self.reach > 0.7;
         if doubly { rate / DOUBLY_CURVED_CHORD } else { rate }
     }
 
-    /// Parameters of a point of the edge and the surface about there.
+    /// Parameters of a point of the edge, and the surface near them.
     fn place(&self, jet: &CurveJet, t: f64, range: Range, track: Option<&Track>) -> (Near, SurfaceJet) {
         if let Some(track) = track.filter(|_| self.pcurve.is_none() && !self.surface.is_elementary())
             && let Some(found) = self.followed(jet, t, track)
@@ -138,7 +143,8 @@ impl EdgeUse<'_, '_> {
         (place, self.surface.jet(place.uv))
     }
 
-    /// Straight on from the last probe, and a step of Gauss and Newton from there: as near as a spacing needs.
+    /// The parameters by a straight step from the last probe and one Gauss–Newton step: as exact as a spacing
+    /// needs.
     fn followed(&self, jet: &CurveJet, t: f64, track: &Track) -> Option<(Near, SurfaceJet)> {
         let guess = self.surface.inside(track.place.uv + track.rate * (t - track.t));
         let s = self.surface.jet(guess);
@@ -149,7 +155,7 @@ impl EdgeUse<'_, '_> {
     }
 }
 
-/// The step in parameter space that comes nearest to one in space.
+/// The step in parameter space whose image comes nearest to a step in space.
 fn least_squares(s: &SurfaceJet, step: DVec3) -> DVec2 {
     let (e, f, g) = (s.du.length_squared(), s.du.dot(s.dv), s.dv.length_squared());
     let (a, b) = (s.du.dot(step), s.dv.dot(step));

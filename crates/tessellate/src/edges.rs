@@ -1,8 +1,12 @@
-//! Discretise edges: each edge exactly once, for the curve and for the demand of every face that uses it.
+//! Sampling of edges: every edge becomes one polyline, for its own curve and for all faces that use it.
 //!
-//! The allowed chords per unit of parameter are integrated over the edge; as many chords as that allows are spread evenly
-//! in that measure, and each is then checked by a proven bound. Faces never add boundary vertices on their own: what they find
-//! out later comes back as a request ([`EdgeSamples::split`]).
+//! 1. Cut the edge at corners of its curve, at poles and at creases of its faces.
+//! 2. Along each piece, integrate the chords per unit of parameter that curve and faces need.
+//! 3. Spread that many chords evenly in this measure, and check each one by a proven bound.
+//! 4. Halve chords over which a face turns too far.
+//!
+//! Faces never add vertices on edges on their own. What they find out later comes back as a request
+//! ([`EdgeSamples::split`]).
 
 mod corners;
 mod turns;
@@ -22,24 +26,27 @@ use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, bisect}
 pub struct EdgeSamples {
     /// Parameters, ends included.
     pub t: Vec<f64>,
-    /// Positions; the first and last are the vertices' own.
+    /// Positions; the first and the last are those of the vertices of the part.
     pub points: Vec<DVec3>,
-    /// Per chord, a bound of its distance to the curve.
+    /// Of every chord, an upper bound of its distance from the curve.
     pub sag: Vec<f64>,
-    /// The fewest chords that the tolerance allows by curvature alone (for the lower bound).
+    /// The fewest chords that the tolerance allows by the curvature of the curve alone. The lower bound of
+    /// the number of triangles needs it.
     pub fewest: f64,
-    /// Which parts of another edge method ran.
+    /// Which parts of an edge method ran.
     pub trace: Trace,
 }
 
-/// Chords per probe interval are measured this often.
+/// Probes between two knots of the curve. The need for chords is taken as constant around each probe: fewer
+/// probes miss short bends, and every probe costs an evaluation of each face.
 const PROBES: usize = 4;
 
-/// Chords use this share of the tolerance: the bound of a facet over a chord is never quite as tight as the chord's own.
+/// Chords use this share of the tolerance. The bound of a facet over a chord is a little larger than the
+/// bound of the chord itself; with the whole tolerance, such facets would ask for finer edges.
 const CHORD_AIM: f64 = 0.985;
 
-/// A chord of which nothing is proven is halved this often: shorter ones mostly have a bound, and where these have none no
-/// shorter one will.
+/// A chord without a finite bound is halved this often. Shorter chords mostly have one; where these have
+/// none, no shorter one will, and halving on would not end.
 const UNBOUNDED_ROUNDS: usize = 4;
 
 impl EdgeSamples {
@@ -52,7 +59,8 @@ impl EdgeSamples {
         splitter: Option<&dyn EdgeSplitter>,
         least: usize,
     ) -> Self {
-        // Faces ask for chords as short as their facets need, and no shorter than the edge itself may be off.
+        // Faces need chords as short as their facets do, but never shorter than the tolerance of the edge
+        // needs.
         let of_faces = &Limits { tolerance: CHORD_AIM * limits.tolerance.max(limits.boundary), ..*limits };
         let limits = &Limits { tolerance: CHORD_AIM * limits.boundary, ..*limits };
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
@@ -106,7 +114,8 @@ impl EdgeSamples {
         for _ in 0..8 {
             let t = probes.spread(count);
             let worst = t.windows(2).map(|t| curve.chord_error(t[0], t[1])).fold(0.0, f64::max);
-            // Of some curves (on offsets of free surfaces) nothing is proven, however short the chords.
+            // Some curves, such as those on offsets of free surfaces, have no finite bound however short the
+            // chords are.
             if worst.is_infinite() {
                 break;
             }
@@ -117,11 +126,12 @@ impl EdgeSamples {
             let factor = (worst / limits.tolerance).sqrt().clamp(1.0, 4.0);
             count = ((count as f64 * factor).ceil() as usize).max(count + 1);
         }
-        // Uneven beyond what the probes saw: halve the chords that are still too far off.
+        // The curve is less even than the probes showed: halve the chords that are still too far off.
         self.add_halved(probes.spread(count), curve, range, uses, limits);
     }
 
-    /// Appends the chords that another method made of a piece without corners, halved where they are too far off the curve.
+    /// Appends the chords that an edge method made of a piece without corners. Those too far off the curve
+    /// are halved.
     fn add_given(
         &mut self,
         t: Vec<f64>,
@@ -193,7 +203,8 @@ fn halved(t: &[f64]) -> Vec<f64> {
     split_where(t, |_, _| true)
 }
 
-/// Parameters at which the curve runs through a pole of a surface: there charts jump, so there must be a sample.
+/// Parameters at which the curve runs through a pole of a surface. Charts jump there, so there must be a
+/// vertex.
 fn poles_on_the_way(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Vec<f64> {
     let mut found = Vec::new();
     if uses.iter().all(|one| one.surface.poles.is_empty()) {
@@ -217,13 +228,15 @@ fn poles_on_the_way(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
     found
 }
 
-/// Samples of an edge between which it crosses a crease at most once.
+/// Samples along an edge to find its crossings with a crease. Two crossings between neighbouring samples are
+/// missed; then a chord passes over the crease, and the proof asks for a finer one.
 const CROSSING_SAMPLES: usize = 64;
 
-/// Samples nearer to a crease than this many times what tells its sides apart are on it.
+/// Samples nearer to a crease than this multiple of the rounding of its position lie on it. Rounding puts
+/// them on either side, which is no crossing.
 const ALONG_CREASE: f64 = 1e4;
 
-/// Where the edge crosses creases of its faces: a crease needs a vertex there.
+/// Parameters at which the edge crosses creases of its faces: there must be a vertex.
 fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Vec<f64> {
     let mut found = Vec::new();
     for one in uses.iter().filter(|u| u.surface.creases.iter().any(|c| !c.is_empty())) {
@@ -235,7 +248,7 @@ fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
         for (axis, creases) in one.surface.creases.iter().enumerate() {
             for &value in creases {
                 let off = |p: DVec2| one.surface.offset_from(axis, value, p);
-                // An edge along the crease is on either side of it by rounding.
+                // Rounding puts the samples of an edge along the crease on either side of it.
                 let rounding = ALONG_CREASE * one.surface.surface.beside_crease(axis, value);
                 for i in 0..CROSSING_SAMPLES {
                     let (a, b) = (off(places[i].uv), off(places[i + 1].uv));
@@ -251,12 +264,12 @@ fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Ve
     found
 }
 
-/// How many chords per parameter are needed, along one smooth piece.
+/// How many chords per unit of parameter one smooth piece needs.
 struct Probes {
     t: Vec<f64>,
-    /// Chords needed from the start up to `t[i]`.
+    /// Chords that are needed from the start up to `t[i]`.
     sum: Vec<f64>,
-    /// The same total by the curve's own curvature alone.
+    /// The total by the curvature of the curve alone, without the faces.
     curvature_total: f64,
 }
 
@@ -265,7 +278,8 @@ impl Probes {
         let mut breaks = vec![range.start];
         breaks.extend(curve.all_breaks(range));
         breaks.push(range.end);
-        // Shapes without knots still vary: probe an ellipse or a long edge on a curved face as if it had some.
+        // Curves without knots still vary: an ellipse, or a long edge on a curved face, is probed as if it
+        // had some.
         let parts = match (curve, breaks.len()) {
             (Curve::Line { .. } | Curve::Circle { .. }, _) => 1,
             (_, 2) => 4,
@@ -298,7 +312,7 @@ impl Probes {
         self.sum[self.sum.len() - 1]
     }
 
-    /// `count` chords with equal shares of the total.
+    /// The ends of `count` chords with equal shares of the total.
     fn spread(&self, count: usize) -> Vec<f64> {
         let (first, last) = (self.t[0], self.t[self.t.len() - 1]);
         let total = self.total();
@@ -327,7 +341,7 @@ impl Probes {
     }
 }
 
-/// Chords per unit of parameter by the curve's curvature: √(κ/8ε)·|c'|; of a circle exactly.
+/// Chords per unit of parameter by the curvature of the curve: √(κ/8ε)·|c'|; for a circle the exact number.
 fn own_rate(curve: &Curve, jet: &CurveJet, limits: &Limits) -> f64 {
     if let Curve::Circle { radius, .. } = curve {
         let cosine = (1.0 - limits.tolerance / radius).max(-0.5);

@@ -1,10 +1,10 @@
 //! How hard a face is tried: the ladder of remedies, and what an attempt that fails leads to.
 //!
-//! An attempt meshes one face with all [`Remedy`]s taken so far. The round decides which remedies a face starts with,
-//! since edges become finer from round to round ([`Effort::of_round`]):
+//! An attempt meshes one face with all [`Remedy`]s taken so far. The round decides which remedies a face
+//! starts with, since edges become finer from round to round ([`Effort::of_round`]):
 //!
-//! 1. Rounds 0 to 2: a chord whose bound is far beyond the tolerance is examined in parts. If the parts are fine, points
-//!    inside the face are tried before the chord is made finer.
+//! 1. Rounds 0 to 2: a chord whose bound is far beyond the tolerance is examined in parts. If the parts are
+//!    fine, points inside the face are tried before the chord is made finer.
 //! 2. From round 3 on such a chord is made finer at once ([`Remedy::FinerChords`]).
 //! 3. From round 6 on loops that still cross are meshed as they are ([`Remedy::CrossingLoops`]).
 //! 4. In round 8, the last one, whatever is still too coarse is accepted and reported ([`Remedy::AsItIs`]).
@@ -14,8 +14,10 @@
 //!
 //! 5. The loops cross: do not cut the face along the creases of its surface ([`Remedy::UncutCreases`]).
 //! 6. A seam is too coarse: cut seams into shorter chords.
-//! 7. A triangle cannot be mended: make chords finer at once (2.), and if that is done already, accept it (4.).
-//! 8. Eight attempts did not suffice: let facets fold over seams and creases ([`Remedy::Folds`]), with coarse seams again.
+//! 7. A triangle cannot be mended: make chords finer at once (2.), and if that is done already, accept it
+//!    (4.).
+//! 8. Eight attempts did not suffice: let facets fold over seams and creases ([`Remedy::Folds`]), with coarse
+//!    seams again.
 //! 9. Eight more did not: let edges turn by any angle ([`Remedy::AnyAngle`]), with coarse seams again.
 //! 10. Eight more did not: keep to the angle, do not cut along creases, and accept what there is.
 //! 11. The face fails.
@@ -29,11 +31,11 @@ pub(crate) enum Remedy {
     FinerChords,
     /// The face is not cut along the creases of its surface.
     UncutCreases,
-    /// Facets may double back over seams and creases, beyond which the face goes on: it is narrower there than its
-    /// tolerance.
+    /// Facets may double back over seams and creases, beyond which the face goes on: it is narrower there
+    /// than its tolerance.
     Folds,
-    /// Edges may turn by any angle. Where the surface turns at once, no seam is fine enough for a limit of angle: the
-    /// tolerance comes first, and the audit reports the angle.
+    /// Edges may turn by any angle. Where the surface turns at once, no seam is fine enough for a limit of
+    /// angle: the tolerance comes first, and the audit reports the angle.
     AnyAngle,
     /// Loops that cross are taken to cross in the model, not by coarse chords: no edge is made finer for it.
     CrossingLoops,
@@ -43,22 +45,25 @@ pub(crate) enum Remedy {
 
 const REMEDIES: usize = Remedy::AsItIs as usize + 1;
 
-/// Rounds in which faces may ask for finer edges; what is still too coarse then is meshed as it is and reported.
-/// Edges converge in three or four rounds; more than eight were never seen to help.
+/// Rounds in which faces may ask for finer edges; what is still too coarse then is meshed as it is and
+/// reported. Chords are up to 2³ · 4⁵ = 8192 times finer by then, and every further round would mesh whole
+/// faces again.
 pub(crate) const MAX_ROUNDS: usize = 8;
 
-/// Rounds in which points inside are tried before chords with wild bounds are made finer. With more rounds, surfaces
-/// that are wild over the chord itself keep asking; with fewer, chords are cut that need not be.
+/// Rounds in which points inside are tried before chords with wild bounds are made finer. With more rounds,
+/// surfaces that are wild over the chord itself keep asking; with fewer, chords are cut that need not be.
 const POINTS_FIRST_ROUNDS: usize = 3;
 
-/// From this round on loops that still cross are taken to cross in truth. Chords have been quartered often by then.
+/// From this round on loops that still cross are taken to cross in the model. Chords are up to 512 times
+/// finer by then.
 const CROSSING_ROUND: usize = 6;
 
-/// Attempts with one limit of folds and angle. Each makes seams shorter by [`SEAM_STEP`], so seams become up to twelve
-/// times finer.
+/// Attempts with one limit of folds and angle. Each makes seams shorter by [`SEAM_STEP`], so seams become up
+/// to twelve times finer.
 const ATTEMPTS: u32 = 8;
 
-/// Chords of a seam or of a natural border, as a share of the longest that the metric allows: facets need the rest.
+/// Chords of a seam or of a natural border, as a share of the longest that the metric allows: facets need the
+/// rest.
 const SEAM_CHORD: f64 = 0.9;
 
 /// A seam that proved too coarse is cut into chords shorter by this factor.
@@ -131,8 +136,8 @@ impl Effort {
         (0..self.seam_steps).fold(SEAM_CHORD, |chord, _| chord * SEAM_STEP)
     }
 
-    /// The effort of the next attempt in the same round; none after the last one, and none where the setback is not for
-    /// the face itself to mend.
+    /// The effort of the next attempt in the same round; none after the last one, and none where the setback
+    /// is not for the face itself to mend.
     pub fn after(self, setback: &Setback) -> Option<Self> {
         let mut next = match setback {
             Setback::Crossing => self.with(Remedy::UncutCreases),

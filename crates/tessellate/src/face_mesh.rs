@@ -1,8 +1,8 @@
 //! The triangulation of one face as it grows: the chart, its triangles, and the geometry of every vertex.
 //!
-//! A vertex has an index: first come the points of the chart's loops, then those inside, in the order of insertion.
-//! Methods that fill a face add points and connect them; vertices of the loops are never added or moved, because the
-//! faces beside them have the same ones.
+//! A vertex has an index: first come the points of the chart's loops, then those inside, in the order of
+//! insertion. Methods that fill a face add points and connect them; vertices of the loops are never added or
+//! moved, because the faces beside them have the same ones.
 
 mod finish;
 mod pole_corners;
@@ -193,7 +193,8 @@ impl<'a, 's> FaceMesh<'a, 's> {
         self.quads.clear();
     }
 
-    /// The position of a mesh vertex: for edges and vertices of the part their own, for others a point of the surface.
+    /// The position of a mesh vertex: for edges and vertices of the part their own, for others a point of the
+    /// surface.
     pub fn position(&self, key: Key) -> DVec3 {
         match key {
             Key::Vertex(v) => self.context.part.vertices[v as usize].point,
@@ -229,8 +230,8 @@ impl<'a, 's> FaceMesh<'a, 's> {
         })
     }
 
-    /// Flips edges of all triangles towards the Delaunay criterion in the metric, where `allowed` says so: it gets the
-    /// corner opposite the edge, the edge's ends and the corner on its other side.
+    /// Flips edges of all triangles towards the Delaunay criterion in the metric, where `allowed` says so: it
+    /// gets the corner opposite the edge, the edge's ends and the corner on its other side.
     pub fn flip_all(&mut self, allowed: &dyn Fn(u32, u32, u32, u32) -> bool) {
         self.mesh.flip_all(&self.vertices.metrics, allowed);
     }
@@ -240,8 +241,8 @@ impl<'a, 's> FaceMesh<'a, 's> {
         self.foreseen.ask(self.context.surface, points);
     }
 
-    /// Inserts a point that is known to lie at this place; returns its index, or `None` on a vertex, on the boundary or
-    /// outside.
+    /// Inserts a point that is known to lie at this place; returns its index, or `None` on a vertex, on the
+    /// boundary or outside.
     pub fn insert(&mut self, p: DVec2, at: Location) -> Option<u32> {
         self.measure(p);
         self.keep_inserted(p, at)

@@ -7,16 +7,16 @@ use crate::trace::Trace;
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 
-/// What is proven of a face.
+/// The proof of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Proof {
-    /// Largest distance between the face and its triangles; infinite where nothing is proven, NaN for an estimate.
+    /// Largest distance between the face and its triangles; infinite without a proof, NaN for an estimate.
     pub error: f64,
-    /// Which bound proved it.
+    /// The kind of bound.
     pub bound: &'static str,
 }
 
-/// A face's triangles before vertices are joined with the neighbours'.
+/// The triangles of a face, before its vertices are joined with those of its neighbours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FaceResult {
     pub uv: Vec<DVec2>,
@@ -27,7 +27,7 @@ pub(crate) struct FaceResult {
     pub inner: Vec<SharedEdge>,
     /// The first `2 · quads` triangles are halves of quadrilaterals.
     pub quads: usize,
-    /// The outer loop runs against the face's sense: the neighbours tell which of the two is right.
+    /// The outer loop contradicts the face's sense; the neighbours decide which of the two is right.
     pub doubtful: bool,
     /// Positions of the keys that are private.
     pub private: Vec<DVec3>,
@@ -36,9 +36,9 @@ pub(crate) struct FaceResult {
     pub boundary_error: f64,
     pub gap: f64,
     pub bound: &'static str,
-    /// c·∫√|K| dA / ε, and the strips of a singly curved face.
+    /// The lower bound of the number of triangles by curvature.
     pub curvature_bound: f64,
-    /// Which parts ran, and how long.
+    /// Which parts ran, and for how long.
     pub trace: Trace,
     pub phases: Phases,
     /// The cells of a subdivision, where they are asked for.
@@ -46,17 +46,17 @@ pub(crate) struct FaceResult {
 }
 
 impl FaceResult {
-    /// Makes the face face the other way.
+    /// Reverses the orientation of the face.
     pub fn turn_over(&mut self) {
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
         self.normals.iter_mut().for_each(|n| *n = -*n);
     }
 }
 
-/// What became of a face.
+/// The result of a face, or why it has none.
 pub(crate) type Meshed = Result<Box<FaceResult>, MeshIssue>;
 
-/// True for a face without a proof where one is asked for: an error of NaN is none either.
+/// True for a face without a proof although one is asked for. An error of NaN is no proof.
 pub(crate) fn is_unproven(result: &FaceResult, limits: &Limits, bound: Bound) -> bool {
     bound == Bound::Proven && !(result.proven_error <= limits.largest())
 }

@@ -1,14 +1,15 @@
 //! Faces that the methods of the options could not prove: the default means mesh them in further passes.
 //!
-//! Each pass starts from the edges. Where a file is loose, loops cross the sooner the finer they are, and a method may
-//! have asked for chords that the default can do without. A pass counts only if it leaves fewer faces unproven.
+//! Each pass starts from the edges. Where a file is loose, loops cross the sooner the finer they are, and a
+//! method may have asked for chords that the default can do without. A pass counts only if it leaves fewer
+//! faces unproven.
 
 use crate::part_job::PartJob;
 use crate::rounds::{Pass, PassResult};
 use crate::shared_inner_edges::{separate, unproven_faces};
 
-/// Passes in which the default takes over: first the unproven faces, then with their neighbours, which may be the ones
-/// that ask for finer edges. Further passes would only add the neighbours' neighbours.
+/// Passes in which the default takes over: first the unproven faces, then with their neighbours, which may be
+/// the ones that ask for finer edges. Further passes would only add the neighbours' neighbours.
 const PASSES: usize = 2;
 
 /// Meshes the part once more where methods left faces unproven; nothing where the options name no method.

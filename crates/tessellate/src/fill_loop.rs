@@ -7,8 +7,8 @@
 //! 3. Bound every triangle. The face is done if all are within the limits.
 //! 4. Let the method refine where triangles are too coarse, and begin again.
 //!
-//! What is still too coarse when the method can do no more is mended as the default does. A face that is not proven even
-//! then is filled by the default from the start.
+//! What is still too coarse when the method can do no more is mended as the default does. A face that is not
+//! proven even then is filled by the default from the start.
 
 use crate::clock::Stopwatch;
 use crate::default_fill::fill_by_rows;
@@ -24,14 +24,14 @@ use crate::trace::Trace;
 use chordal_brep::MeshIssue;
 use chordal_nurbs::DVec2;
 
-/// A method may refine what the proof found too coarse this often. Each round costs a whole build of the face, and a
-/// method that converges needs far fewer.
+/// A method may refine what the proof found too coarse this often. Each round builds the whole face again.
 const METHOD_ROUNDS: usize = 24;
 
 /// Most cells of one face. More would take gigabytes.
 const MOST_CELLS: usize = 4_000_000;
 
-/// Proving inserts points and flips edges, after which triangles at poles may be flat again; they are opened this often.
+/// Proving inserts points and flips edges, after which triangles at poles may be flat again; they are opened
+/// this often.
 const OPENINGS: usize = 3;
 
 /// Fills a face whose loops are triangulated, and proves it.
@@ -118,7 +118,8 @@ fn refine_by_method(
         if judged.coarse.is_empty() {
             break;
         }
-        // 4. Inside, smaller cells always help in the end. Where a long chord meets small cells they need not.
+        // 4. Inside, smaller cells always help in the end. Where a long chord meets small cells they need
+        //    not.
         if !judged.is_inside && judged.coarse.len() >= coarse_at_boundary || !filler.refine(&judged.coarse) {
             break;
         }

@@ -1,8 +1,8 @@
 //! Methods of other crates that fill the inside of faces.
 //!
-//! All methods share the edges, the proof and the stitching, and so the watertightness: a method may not set a vertex on
-//! an edge, since the neighbours would not know it. What a method chooses is how a face is subdivided, how the
-//! subdivision is cut with the loops, and how the polygons become triangles.
+//! All methods share the edges, the proof and the stitching, and so the watertightness: a method may not set
+//! a vertex on an edge, since the neighbours would not know it. What a method chooses is how a face is
+//! subdivided, how the subdivision is cut with the loops, and how the polygons become triangles.
 
 use crate::face_mesh::FaceMesh;
 use crate::limits::Bound;
@@ -27,7 +27,8 @@ pub trait FillMethod: Debug + Send + Sync {
 pub struct FillTask {
     /// How errors are judged.
     pub bound: Bound,
-    /// Edges are approximated in space ([`crate::method::EdgeSplitter::is_in_space`]): the method leaves their chords alone.
+    /// Edges are approximated in space ([`crate::method::EdgeSplitter::is_in_space`]): the method leaves
+    /// their chords alone.
     pub edges_in_space: bool,
 }
 
@@ -42,8 +43,8 @@ pub trait FaceFiller {
     /// Where the face is given up.
     fn build(&mut self, face: &mut FaceMesh<'_, '_>, check: Check<'_>) -> Result<(), MeshIssue>;
 
-    /// Makes the places finer that the proof found too coarse; false where nothing can be done. The face is then built
-    /// once more.
+    /// Makes the places finer that the proof found too coarse; false where nothing can be done. The face is
+    /// then built once more.
     fn refine(&mut self, coarse: &[DVec2]) -> bool;
 
     /// Chords (edge, index) that the method itself finds too coarse.

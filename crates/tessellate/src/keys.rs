@@ -1,28 +1,29 @@
-//! Names of vertices and segments: which mesh vertex a place in a face's chart is, and what runs from it to the next.
+//! Names of vertices and segments: which mesh vertex a point of a chart is, and what connects it to the next
+//! one.
 
 use chordal_nurbs::DVec2;
 
-/// Which mesh vertex a chart point is.
+/// The mesh vertex of a chart point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Key {
     /// A vertex of the part.
     Vertex(u32),
-    /// Sample `1..` of an edge.
+    /// A sample of an edge between its ends: (edge, index).
     Edge(u32, u32),
-    /// A point of this face alone.
+    /// A point of this face only.
     Private(u32),
 }
 
-/// What the polygon runs along from one chart point to the next.
+/// What connects one chart point to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Segment {
     Edge {
         edge: u32,
         chord: u32,
     },
-    /// A cut through the surface that only this face knows; both sides have the same vertices.
+    /// A cut through the surface that only this face has; both sides have the same vertices.
     Seam,
-    /// A line of parameter space that is one point.
+    /// A line of parameter space that is one point of space.
     Pole,
 }
 
@@ -35,15 +36,15 @@ pub struct ChartPoint {
     pub segment: Segment,
 }
 
-/// An edge between two vertices that other faces may have too, by its keys in order.
+/// An edge that other faces may have too, by the keys of its ends in order.
 pub(crate) type SharedEdge = [Key; 2];
 
 pub(crate) fn sorted([a, b]: SharedEdge) -> SharedEdge {
     [a.min(b), a.max(b)]
 }
 
-/// An edge that another face may have as an inner edge too, by its ends: neither is a point of one face alone, and it is no chord
-/// of an edge.
+/// True for an edge, given by its ends, that another face may have as an inner edge: neither end belongs to
+/// one face only, and the edge is no chord of an edge of the part.
 pub(crate) fn is_shareable(pair: SharedEdge) -> bool {
     match pair {
         [Key::Private(_), _] | [_, Key::Private(_)] => false,

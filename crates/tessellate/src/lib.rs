@@ -4,14 +4,14 @@
 //!
 //! 1. Prepare the surfaces of the part (`part_job`).
 //! 2. Sample the edges, each once for all of its faces (`edges`).
-//! 3. Mesh the faces, in rounds (`rounds`). For one face (`attempts`): unroll its loops into one chart (`chart`,
-//!    `unroll`), triangulate them (`triangulate`), fill the inside (`fill_loop`, `rows`), and prove every triangle
-//!    (`prove`). A face that finds an edge too coarse asks for finer chords; the requests of a round are merged, and only
-//!    the faces at those edges run again.
+//! 3. Mesh the faces, in rounds (`rounds`). For one face (`attempts`): unroll its loops into one chart
+//!    (`chart`, `unroll`), triangulate them (`triangulate`), fill the inside (`fill_loop`, `rows`), and prove
+//!    every triangle (`prove`). A face that finds an edge too coarse asks for finer chords; the requests of a
+//!    round are merged, and only the faces at those edges run again.
 //! 4. Join the faces (`orient`, `stitch`).
 //!
-//! How hard a face is tried, and in which order remedies are taken, is written down in `effort`. Other crates may fill
-//! faces and cut edges in their own ways ([`method`]).
+//! How hard a face is tried, and in which order remedies are taken, is written down in `effort`. Other crates
+//! may fill faces and cut edges in their own ways ([`method`]).
 
 mod attempts;
 mod bulk;

@@ -18,7 +18,8 @@ pub enum Bound {
 pub struct Limits {
     /// Distance of facets inside a face.
     pub tolerance: f64,
-    /// Sagitta of a chord of the model's edges, and distance of the facets that touch one where that is larger.
+    /// Sagitta of a chord of the model's edges, and distance of the facets that touch one where that is
+    /// larger.
     pub boundary: f64,
     /// Turn of the normal between the ends of an edge, radians.
     pub angle: f64,
@@ -33,12 +34,13 @@ impl Limits {
     }
 }
 
-/// Edges shorter than this share of the tolerance may turn by any angle. At a singular point the surface turns within no
-/// distance at all, so refining would not end. A larger share leaves visible kinks in the shading.
+/// Edges shorter than this share of the tolerance may turn by any angle. At a singular point the surface
+/// turns within no distance at all, so refining would not end. A larger share leaves visible kinks in the
+/// shading.
 pub const TURN_LENGTH: f64 = 0.1;
 
-/// True where two unit normals enclose more than `limit`, in radians. A zero vector stands for an undefined normal, which
-/// encloses no angle with anything.
+/// True where two unit normals enclose more than `limit`, in radians. A zero vector stands for an undefined
+/// normal, which encloses no angle with anything.
 pub(crate) fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
     limit < std::f64::consts::PI
         && n != DVec3::ZERO
@@ -46,8 +48,9 @@ pub(crate) fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
         && n.dot(m) < (limit * (1.0 + 1e-9)).cos() - 1e-12
 }
 
-/// Points nearer to each other than this share of the tolerance are one point: poles, vertices on them, pcurves that
-/// agree with their edge. A larger share would take a visible part of the tolerance, a smaller one is below what files keep.
+/// Points nearer to each other than this share of the tolerance are one point: poles, vertices on them,
+/// pcurves that agree with their edge. A larger share would take a visible part of the tolerance, a smaller
+/// one is below what files keep.
 const SAME_POINT: f64 = 0.02;
 
 /// One point is also smaller than this share of the part, so that a coarse tolerance merges nothing.

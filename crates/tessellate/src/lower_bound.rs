@@ -1,9 +1,11 @@
-//! The fewest triangles possible on one face (`docs/report.md`): a reference that never looks at our own mesh's edges.
+//! A lower bound of the number of triangles on one face (`docs/report.md`). It depends on the model only, not
+//! on the edges of this mesh.
 
 use crate::edges::EdgeSamples;
 use chordal_brep::{Face, Loop};
 
-/// The larger of the curvature's demand and V_b − 2χ, with V_b from the curves alone.
+/// The larger of the bound by curvature and V_b − 2χ, where V_b counts the vertices that the curves of the
+/// edges need.
 pub(crate) fn lower_bound(face: &Face, edges: &[EdgeSamples], closed: &[bool], curvature: f64) -> f64 {
     let mut vertices = 0.0;
     let mut components = 0usize;
@@ -15,7 +17,8 @@ pub(crate) fn lower_bound(face: &Face, edges: &[EdgeSamples], closed: &[bool], c
                 components += 1;
             }
             Loop::Edges { coedges, .. } => {
-                // A seam is run twice and bounds nothing; it separates the pieces of boundary between its two runs.
+                // A seam occurs twice in its loop and bounds nothing; it separates the pieces of boundary
+                // between its two occurrences.
                 let is_seam = |i: usize| coedges.iter().filter(|c| c.edge == coedges[i].edge).count() > 1;
                 let real: Vec<bool> = (0..coedges.len())
                     .map(|i| !is_seam(i) && !edges[coedges[i].edge.index()].sag.is_empty())

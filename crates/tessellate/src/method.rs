@@ -1,7 +1,7 @@
 //! What a method of another crate needs: the traits that it implements, and what it works on.
 //!
-//! A [`FillMethod`] fills the inside of faces; it works on a [`FaceMesh`]. An [`EdgeSplitter`] cuts edges into chords; it
-//! works on an [`EdgePiece`] and the faces beside it. Both are set in [`crate::Options`].
+//! A [`FillMethod`] fills the inside of faces; it works on a [`FaceMesh`]. An [`EdgeSplitter`] cuts edges
+//! into chords; it works on an [`EdgePiece`] and the faces beside it. Both are set in [`crate::Options`].
 
 pub use crate::edge_use::{EdgePiece, EdgeSplitter, EdgeUse};
 pub use crate::edges::EdgeSamples;

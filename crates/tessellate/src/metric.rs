@@ -1,4 +1,5 @@
-//! The sizing metric: lengths in it are counted in allowed chords, so an edge of length 1 is as long as it may be.
+//! The sizing metric. Lengths in it are counted in allowed chords: an edge of length 1 is as long as it may
+//! be.
 
 use crate::limits::Limits;
 use chordal_nurbs::{DVec2, DVec3, SurfaceJet};
@@ -11,11 +12,13 @@ pub struct Metric {
     pub vv: f64,
 }
 
-/// Bits that are left of a metric's numbers, and the number of steps that this is.
+/// Bits of a metric's numbers that are kept, and the number of steps that they make. The dropped bits hold
+/// rounding; with more bits, rounding would decide between two flips, with fewer, real differences would be
+/// lost.
 const SETTLED_BITS: u32 = 26;
 const SETTLED: f64 = (1u64 << SETTLED_BITS) as f64;
 
-/// A number rounded to so many bits.
+/// A number rounded to [`SETTLED_BITS`] bits.
 fn settled(x: f64) -> f64 {
     let dropped = f64::MANTISSA_DIGITS - 1 - SETTLED_BITS;
     let rounded = f64::from_bits((x.to_bits() + (1 << (dropped - 1))) >> dropped << dropped);
@@ -43,7 +46,8 @@ impl Metric {
         }
     }
 
-    /// The same but for the last bits, which hold rounding: which of two flips is better must not hang on them.
+    /// The metric without its last bits, which hold rounding and must not decide which of two flips is
+    /// better.
     pub fn settled(self) -> Metric {
         let shared = settled(self.uu * self.vv).sqrt();
         let uv =
@@ -51,9 +55,10 @@ impl Metric {
         Metric { uu: settled(self.uu), uv, vv: settled(self.vv) }
     }
 
-    /// How far the lines of each parameter bend sideways in the surface, per square of the parameter.
+    /// How far the lines of each parameter bend sideways within the surface, per square of the parameter.
     ///
-    /// A long step along such a line cuts across the surface beside it, which the normal curvature does not see.
+    /// A long step along such a line cuts across the surface beside it. The normal curvature does not show
+    /// this.
     pub fn sideways(jet: &SurfaceJet) -> Metric {
         let n = jet.du.cross(jet.dv).normalize_or_zero();
         let bend = |d: DVec3, second: DVec3| second.dot(n.cross(d.normalize_or_zero())).abs();
@@ -66,10 +71,11 @@ impl Metric {
     }
 }
 
-/// The curvature of a surface at a point, ready to be sized.
+/// The curvature of a surface at a point, in allowed chords.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sizing {
-    /// |II|/8ε, III/α² and I/L², the largest in each principal direction: an edge of length 1 is as long as allowed.
+    /// |II|/8ε, III/α² and I/L², the largest in each principal direction: an edge of length 1 is as long as
+    /// allowed.
     pub metric: Metric,
     /// II/8ε with its signs.
     pub signed: Metric,
@@ -85,8 +91,8 @@ impl Sizing {
         Self::known_within(jet, limits, 0.0)
     }
 
-    /// The same for a place that is known only within `distance`: the normals turn no faster than on a ball of that radius, since
-    /// in tighter folds nobody knows which side the place is on.
+    /// The sizing at a place that is known only within `distance`: the normals are taken to turn no faster
+    /// than on a ball of that radius, because in a tighter fold it is unknown which side the place is on.
     pub fn known_within(jet: &SurfaceJet, limits: &Limits, distance: f64) -> Option<Self> {
         let cross = jet.du.cross(jet.dv);
         let area = cross.length();

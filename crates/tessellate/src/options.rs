@@ -14,11 +14,11 @@ use std::time::Duration;
 pub struct Options {
     /// Largest distance between mesh and surface, in the part's units.
     pub tolerance: f64,
-    /// Largest distance between an edge and its chords where it is to be another one than `tolerance`. Facets that touch an edge may then
-    /// be as far off as the larger of the two, others keep to `tolerance`.
+    /// Largest distance between an edge and its chords where it is to be another one than `tolerance`. Facets
+    /// that touch an edge may then be as far off as the larger of the two, others keep to `tolerance`.
     pub boundary_tolerance: Option<f64>,
-    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians. Edges shorter than a
-    /// tenth of the tolerance are exempt: beside a singular point no edge is short enough.
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians. Edges
+    /// shorter than a tenth of the tolerance are exempt: beside a singular point no edge is short enough.
     pub angle: Option<f64>,
     /// Longest mesh edge, in the part's units.
     pub max_edge: Option<f64>,

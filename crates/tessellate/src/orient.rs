@@ -1,9 +1,10 @@
-//! Which way faces face, where a file contradicts itself.
+//! Orientation of faces where a file contradicts itself.
 //!
-//! Where a loop runs against the sense of its face, one of the two is wrong. Triangles follow the loop at first. Afterwards
-//! each such face is compared with its neighbours: along a common edge two faces of one shell run in opposite
-//! directions. Faces without doubt stay as they are; from them the others are settled outwards, those first most of whose
-//! boundary is settled, each by the majority of its settled chords.
+//! Where a loop runs against the sense of its face, one of the two is wrong. Triangles follow the loop at
+//! first. Afterwards each such doubtful face is compared with its neighbours: along a common edge, two faces
+//! of one shell run in opposite directions. Faces without doubt are never changed. The doubtful ones are
+//! decided one by one, first the face that has the largest share of its boundary with decided faces, by the
+//! majority of its chords.
 
 use crate::edges::EdgeSamples;
 use crate::face_result::FaceResult;
@@ -11,13 +12,13 @@ use crate::keys::Key;
 use chordal_brep::{BodyKind, Part, Shell};
 use chordal_nurbs::DVec3;
 
-/// A chord of an edge between two faces that run along it the same way, which is wrong, or opposite ways.
+/// A chord between two faces: they run along it in the same direction, which is wrong, or in opposite ones.
 struct Meeting {
     faces: [u32; 2],
     same: bool,
 }
 
-/// Turns over the doubtful faces that contradict most of their neighbours.
+/// Reverses the doubtful faces that contradict most of their neighbours.
 pub(crate) fn settle_orientation(faces: &mut [Option<Box<FaceResult>>]) {
     let mut open: Vec<u32> = Vec::new();
     let mut settled = vec![true; faces.len()];
@@ -36,7 +37,7 @@ pub(crate) fn settle_orientation(faces: &mut [Option<Box<FaceResult>>]) {
         meeting.faces.iter().for_each(|&f| of_face[f as usize].push(k as u32));
     }
     while !open.is_empty() {
-        // How many chords to settled neighbours there are, how many of them contradict.
+        // The number of chords to decided neighbours, and how many of them contradict.
         let votes = |f: u32| {
             let known = of_face[f as usize].iter().map(|&k| &meetings[k as usize]).filter(|m| {
                 let other = if m.faces[0] == f { m.faces[1] } else { m.faces[0] };
@@ -78,7 +79,8 @@ fn meetings(faces: &[Option<Box<FaceResult>>]) -> Vec<Meeting> {
     pairs.map(|pair| Meeting { faces: [pair[0].1, pair[1].1], same: pair[0].2 == pair[1].2 }).collect()
 }
 
-/// Turns over the closed shells of solids whose volume has the wrong sign: the outer one's is positive, a void's negative.
+/// Reverses the closed shells of solids whose volume has the wrong sign: the outer shell encloses a positive
+/// volume, a void a negative one.
 pub(crate) fn turn_inside_out(part: &Part, edges: &[EdgeSamples], faces: &mut [Option<Box<FaceResult>>]) {
     let mut uses = vec![0u32; faces.len()];
     part.shells.iter().flat_map(|s| &s.faces).for_each(|f| uses[f.index()] += 1);
@@ -97,7 +99,7 @@ pub(crate) fn turn_inside_out(part: &Part, edges: &[EdgeSamples], faces: &mut [O
     }
 }
 
-/// Six times the volume that a shell encloses; `None` where a face is missing, or where it is nothing but rounding.
+/// Six times the volume that a shell encloses; `None` where a face is missing or the volume is only rounding.
 fn volume(
     part: &Part,
     edges: &[EdgeSamples],
@@ -124,7 +126,7 @@ fn volume(
     (sum.abs() > 1e-9 * sum_of_sizes).then_some(sum)
 }
 
-/// True where every chord is run along once each way, or equally often each way.
+/// True where every chord is used equally often in both directions.
 fn is_closed(shell: &Shell, faces: &[Option<Box<FaceResult>>]) -> bool {
     let mut sides: Vec<([(Key, usize); 2], i32)> = Vec::new();
     for f in &shell.faces {

@@ -1,4 +1,5 @@
-//! Panics become issues: a fault of this program costs one face or edge, not the job, and asks for a bug report.
+//! Panics become issues: a fault of this program costs one face or edge, not the job, and asks for a bug
+//! report.
 
 use chordal_brep::MeshIssue;
 use std::any::Any;
@@ -10,8 +11,9 @@ thread_local! {
     static LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Remembers where a panic happened, so that the [`MeshIssue::InternalError`] that comes of it can say so. The panic
-/// hook of a program may call this; the library sets no hook itself, since that would change the whole process.
+/// Remembers where a panic happened, so that the [`MeshIssue::InternalError`] that comes of it can say so.
+/// The panic hook of a program may call this; the library sets no hook itself, since that would change the
+/// whole process.
 pub fn remember_panic(info: &PanicHookInfo<'_>) {
     let location = info.location().map(|place| format!("{}:{}", place.file(), place.line()));
     LOCATION.with_borrow_mut(|last| *last = location);

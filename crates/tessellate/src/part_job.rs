@@ -8,8 +8,8 @@ use chordal_brep::{Face, FaceGeometry, Loop, MeshIssue, Part, Pcurve};
 use chordal_nurbs::{DVec3, Surface};
 use std::borrow::Cow;
 
-/// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter. The rest is
-/// far more than rounding needs and costs a quarter of a percent of the triangles.
+/// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter. It
+/// costs at most half a percent more triangles.
 const AIM: f64 = 0.995;
 
 /// One part to be meshed.

@@ -1,25 +1,26 @@
-//! How far the file's own curves in the parameters of a face lie off the edges that they stand for.
+//! How far the file's parameter curves (pcurves) of a face lie off the edges that they belong to.
 //!
-//! Edges bound faces by their curves in space, once for both faces; whoever trims a face by its pcurves instead gets another
-//! boundary, further off by what the two disagree. That is the file's doing, and part of its gap.
+//! Chordal bounds faces by the curves of edges in space, which both faces share. A reader that trims a face
+//! by its pcurves gets another boundary, further off by the difference. The file causes this difference, so
+//! it is part of the file's gap.
 
 use crate::edges::EdgeSamples;
 use crate::surface::FaceSurface;
 use chordal_brep::{Coedge, Edge, Face, Loop, Part, Pcurve};
 use chordal_nurbs::{Curve, CurveInverter, DVec2, DVec3, Surface};
 
-/// Newton steps along a curve, from a place that is nearly the nearest.
+/// Newton steps along a curve, from a parameter that is nearly the nearest one. They converge quadratically.
 const STEPS: usize = 4;
 
-/// A pcurve whose ends lie further off the edge's than this share of the edge's length is parametrised otherwise than the edge:
-/// which piece of it is meant cannot be told, and nobody can use it.
+/// A pcurve whose ends lie further from the ends of its edge than this share of the edge's length belongs to
+/// another piece of the curve. Nothing tells which one, so no reader can use it.
 const OTHER_PIECE: f64 = 0.1;
 
-/// Parameters this share of the domain beyond its end are at its end.
+/// Parameters beyond the end of the domain by this share of it are at its end.
 const SAME_PARAMETER: f64 = 1e-6;
 
-/// The largest distance of the face's pcurves, lifted to its surface, from their edges' curves, at the ends and in the middle of
-/// every chord. On planes, which need no pcurves, none.
+/// The largest distance between the pcurves of a face, lifted to its surface, and the curves of their edges,
+/// at the ends and in the middle of every chord; 0 on planes, which need no pcurves.
 pub(crate) fn pcurve_gap(part: &Part, face: &Face, surface: &FaceSurface<'_>, edges: &[EdgeSamples]) -> f64 {
     if matches!(surface.surface, Surface::Plane { .. }) {
         return 0.0;
@@ -37,7 +38,7 @@ pub(crate) fn pcurve_gap(part: &Part, face: &Face, surface: &FaceSurface<'_>, ed
     coedges.map(gap).fold(0.0, f64::max)
 }
 
-/// The same for one pcurve; none for one that is of no use.
+/// The gap of one pcurve; `None` for a pcurve that no reader can use.
 fn off(
     edge: &Edge,
     curve: &Curve,
@@ -62,7 +63,7 @@ fn off(
     if gap.is_finite() { gap } else { 0.0 }
 }
 
-/// True for parameters that the surface has no point for.
+/// True for parameters outside of the surface.
 fn is_beyond(surface: &FaceSurface<'_>, p_uv: DVec2) -> bool {
     let domain = surface.domain();
     (0..2).any(|i| {
@@ -71,7 +72,8 @@ fn is_beyond(surface: &FaceSurface<'_>, p_uv: DVec2) -> bool {
     })
 }
 
-/// The distance of a point from the edge's curve, beyond the ends of the edge, too, found from parameter `t`.
+/// The distance of a point from the curve of the edge, found from parameter `t`; the curve may be followed
+/// beyond the ends of the edge.
 fn beside(curve: &Curve, edge: &Edge, t: f64, p: DVec3, resolution: f64) -> f64 {
     let direct = curve.point(t).distance(p);
     if direct.partial_cmp(&resolution).is_none_or(|o| o.is_le()) {
@@ -92,6 +94,6 @@ fn beside(curve: &Curve, edge: &Edge, t: f64, p: DVec3, resolution: f64) -> f64 
     let jet = curve.jet(at);
     let off = p - jet.p;
     let is_end = at == edge.range.start || at == edge.range.end;
-    // Beyond an end only what lies beside the tangent counts.
+    // Beyond an end, only the distance beside the tangent counts.
     if is_end { off.reject_from(jet.d1).length() } else { off.length() }.min(direct)
 }

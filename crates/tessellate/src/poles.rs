@@ -1,7 +1,8 @@
-//! Triangles at poles, turned so that they have an area.
+//! Triangles at poles: edges are flipped until every triangle has an area.
 //!
-//! A side of the chart that is one point of space is one corner for every triangle that touches it. A triangle between that point
-//! and two vertices one above the other then lies in a meridian and covers nothing:
+//! A pole is a side of the chart that is one point of space, and one corner for every triangle that touches
+//! it. A triangle between the pole and two vertices one above the other lies in a meridian and covers
+//! nothing:
 //!
 //! ```text
 //!   ══════════p══      p is the whole line; p–a–b is flat in space. The edge to b, the farther one, is flipped
@@ -13,8 +14,9 @@
 use crate::face_mesh::FaceMesh;
 use crate::triangulate::{NONE, orient};
 
-/// Flips edges at poles until every triangle there spans the pole's line the right way, as far as possible; borders of cells
-/// that end in the pole as well, since all places of its line are one. Returns the number of flips.
+/// Flips edges at poles until every triangle there spans a part of the pole's line in the right direction, as
+/// far as possible. Borders of cells that end in the pole are flipped as well, since all places of its line
+/// are one vertex. Returns the number of flips.
 pub fn open_out(face: &mut FaceMesh<'_, '_>) -> usize {
     if !face.touches_pole() {
         return 0;
@@ -29,7 +31,7 @@ pub fn open_out(face: &mut FaceMesh<'_, '_>) -> usize {
         {
             face.mesh_mut().flip_edge(t, i);
             flips += 1;
-            // What could not be flipped before may have a better neighbour now.
+            // An edge that could not be flipped before may have a better neighbour now.
             for t in [t, other] {
                 queue.push(t);
                 queue.extend(face.mesh().neighbors[t as usize].iter().filter(|&&n| n != NONE));
@@ -40,7 +42,8 @@ pub fn open_out(face: &mut FaceMesh<'_, '_>) -> usize {
     flips
 }
 
-/// Where a triangle with one corner on a pole spans nothing, or the wrong way: the corner opposite the edge to flip.
+/// The corner opposite the edge to flip, in a triangle with one corner on a pole that spans nothing, or spans
+/// it in the wrong direction.
 fn flat_at_pole(face: &FaceMesh<'_, '_>, t: u32) -> Option<usize> {
     let c = face.mesh().triangles[t as usize];
     let at_pole = c.map(|v| face.is_at_pole(v));
@@ -60,7 +63,7 @@ fn flat_at_pole(face: &FaceMesh<'_, '_>, t: u32) -> Option<usize> {
         return None;
     }
     let height = |p: chordal_nurbs::DVec2| (p[pole.axis] - apex[pole.axis]).abs();
-    // Opposite the nearer of the two lies the edge from the pole to the farther one.
+    // The edge from the pole to the farther of the two lies opposite the nearer one.
     Some(if height(a) < height(b) { (i + 1) % 3 } else { (i + 2) % 3 })
 }
 

@@ -1,17 +1,18 @@
-//! Proof: every triangle of a face gets an upper bound of its distance from the surface, and what is over the limits is
-//! mended.
+//! Proof: every triangle of a face gets an upper bound of its distance from the surface, and what is over the
+//! limits is mended.
 //!
 //! [`Prover::refine`] takes triangles from a queue, one after the other:
 //!
 //! 1. Bound the triangle, and find what is wrong with it ([`Prover::judge`]).
 //! 2. A chord of an edge that is too coarse is noted: after all triangles, the face asks for finer edges.
 //! 3. A chord of a seam that is too coarse ends the attempt: the seam is this face's own, and is cut finer.
-//! 4. Anything else is mended inside ([`mend`]): an edge is flipped, or a point is inserted. The triangles that this
-//!    changes go back to the queue. Once a finer edge is asked for, nothing is mended any more, since the face runs again.
+//! 4. Anything else is mended inside ([`mend`]): an edge is flipped, or a point is inserted. The triangles
+//!    that this changes go back to the queue. Once a finer edge is asked for, nothing is mended any more,
+//!    since the face runs again.
 //! 5. Where the queue is empty, triangles without area are flipped; that may fill the queue again.
 //!
-//! In the end every triangle has a bound, or the attempt has failed with a [`Setback`]. A face may also be stuck: the
-//! number of steps is limited, and a triangle may have no place for a point.
+//! In the end every triangle has a bound, or the attempt has failed with a [`Setback`]. A face may also be
+//! stuck: the number of steps is limited, and a triangle may have no place for a point.
 //!
 //! Not guaranteed: that mending ends for every surface; the limit of steps ends it.
 
@@ -37,19 +38,19 @@ use chordal_nurbs::{Piece, Surface, SurfaceBounds};
 use chords::POINTS_FIRST;
 use std::collections::VecDeque;
 
-/// Steps that one face may take: so many for each triangle that it begins with, and some more. A face that converges
-/// takes two or three per triangle; with more than these, faces that never converge would take most of the time.
+/// Steps that one face may take: this many for each triangle that it begins with, and some more. Where
+/// mending never ends, this limit ends it; a lower one would stop faces that need many points in one place.
 const STEPS: (usize, usize) = (16, 4_000);
 
-/// The same for a face that cannot be proven, because its loops cross: a little effort will do.
+/// The limit for a face that cannot be proven, because its loops cross: a little effort suffices.
 const HOPELESS_STEPS: (usize, usize) = (4, 100);
 
-/// The deadline and the cancel flag are looked at once in so many steps: often enough to stop within milliseconds, too
-/// rarely to cost anything.
+/// The deadline and the cancel flag are checked once in this many steps: often enough to stop within
+/// milliseconds, too rarely to cost anything.
 pub(crate) const STEPS_PER_LOOK: usize = 256;
 
-/// Flips of triangles without area are followed by refining, and that by flips, this often. More passes were never
-/// needed where the first ones do not help.
+/// Flips of triangles without area are followed by refining, and that by flips, this often. Without a limit,
+/// the two could undo each other for ever.
 const SLIVER_PASSES: u32 = 3;
 
 pub(crate) struct Prover<'a> {

@@ -1,43 +1,45 @@
-//! What was done to a part, face by face.
+//! The result of meshing a part, face by face.
 
 use crate::trace::Trace;
 use chordal_brep::MeshIssue;
 use chordal_nurbs::UvBox;
 
-/// One face.
+/// The result for one face.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FaceReport {
     /// Index of the face in its part.
     pub face: u32,
     pub triangles: usize,
-    /// Proven two-sided distance to the mesh, without the gap; NaN where nothing is proven.
+    /// Proven two-sided distance to the mesh, without the gap; NaN without a proof.
     pub proven_error: f64,
-    /// Proven largest distance between the edges around it and their chords: what `boundary_tolerance` bounds.
+    /// Proven largest distance between the edges around the face and their chords, which `boundary_tolerance`
+    /// limits.
     pub boundary_error: f64,
-    /// Largest distance of a mesh vertex from this face's surface: what the file itself is loose by.
+    /// Largest distance of a mesh vertex from the surface of this face: the file's own inaccuracy.
     pub gap: f64,
-    /// Largest distance of the file's own parameter curves on this face from the edges that bound it.
+    /// Largest distance between the file's parameter curves on this face and the edges that bound it.
     pub pcurve_gap: f64,
-    /// Which bound proved it ("plane", "second derivatives", "none" …).
+    /// The kind of bound: "plane", "second derivatives", "none" and others.
     pub bound: &'static str,
     /// The fewest triangles possible, see `docs/report.md`.
     pub lower_bound: f64,
-    /// Which parts of the tessellator ran, and what each made.
+    /// Which parts of the mesher ran, with the number of things that each one made.
     pub trace: Trace,
-    /// Time of the phases of its strategy, in the last attempt.
+    /// Time of the phases of a fill method, in the last attempt.
     pub phases: Phases,
-    /// The cells of its subdivision in the chart, where they were asked for.
+    /// The cells of the subdivision in the chart, where the options ask for them.
     pub cells: Vec<UvBox>,
-    /// Why the face has no triangles, or not good enough ones.
+    /// Why the face has no triangles.
     pub failed: Option<MeshIssue>,
-    /// The face is so thin that it has no area at the model's own accuracy; it has no triangles and needs none.
+    /// The face has no area at the accuracy of the model; it has no triangles and needs none.
     pub zero_area: bool,
 }
 
-/// Time spent in the phases of a strategy by cells, in seconds (the rows of the table of Kahlesz, Balázs, Klein 2001).
+/// Time spent in the phases of a fill method by cells, in seconds (the rows of the table of Kahlesz, Balázs,
+/// Klein 2001).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Phases {
-    /// Splines to their Bézier pieces, or to the cells that a strategy begins with.
+    /// From splines to Bézier pieces, or to the cells that a method begins with.
     pub conversion: f64,
     /// Subdivision.
     pub subdivision: f64,
@@ -56,12 +58,12 @@ pub struct StageSeconds {
     pub stitch: f64,
 }
 
-/// One part.
+/// The result for one part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartReport {
     /// One per face of the part, in its order.
     pub faces: Vec<FaceReport>,
-    /// Which parts made polylines of the edges, where that was not left to the default.
+    /// Which parts of an edge method ran; empty for the default mesher.
     pub edge_trace: Trace,
     /// Edges that a fault of this program left without samples, by their index in the part.
     pub edge_faults: Vec<(u32, MeshIssue)>,

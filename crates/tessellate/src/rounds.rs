@@ -3,9 +3,11 @@
 //! 1. Sample every edge once ([`Pass::sample_edges`]).
 //! 2. Mesh the faces, in parallel. A face never changes an edge; it asks for finer chords.
 //! 3. Merge the requests of all faces, and cut those chords.
-//! 4. Mesh the faces at those edges again; go on with 3 until there are no requests, or the last round is over.
+//! 4. Mesh the faces at those edges again; go on with 3 until there are no requests, or the last round is
+//!    over.
 //!
-//! What one face does never depends on another face of the same round, so the order of threads changes nothing.
+//! What one face does never depends on another face of the same round, so the order of threads changes
+//! nothing.
 
 use crate::attempts::mesh_face;
 use crate::chart::FaceContext;
@@ -21,14 +23,15 @@ use chordal_nurbs::Curve;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Rounds in which chords are halved; later ones are quartered. Where a surface turns within almost no distance, halves
-/// do not get there in the rounds that there are.
+/// Rounds in which chords are halved; later ones are quartered. Where a surface turns within almost no
+/// distance, halves do not get there in the rounds that there are.
 const HALVING_ROUNDS: usize = 3;
 
 /// One pass over a part, from its edges on.
 pub(crate) struct Pass<'j, 'a> {
     pub job: &'j PartJob<'a>,
-    /// Of every face: the default meshes it and its edges, in place of the methods of the options. None: no face.
+    /// Of every face: the default meshes it and its edges, in place of the methods of the options. None: no
+    /// face.
     by_default: Option<(Options, Vec<bool>)>,
 }
 
@@ -103,8 +106,8 @@ impl<'j, 'a> Pass<'j, 'a> {
         })
     }
 
-    /// Single chords between the same two vertices as another single chord, where the curve is not straight: they would
-    /// enclose nothing.
+    /// Single chords between the same two vertices as another single chord, where the curve is not straight:
+    /// they would enclose nothing.
     fn twins(&self, edges: &[EdgeSamples]) -> Vec<usize> {
         let model = &self.job.part.edges;
         let ends = |e: &Edge| (e.start.min(e.end), e.start.max(e.end));
@@ -165,7 +168,8 @@ impl<'j, 'a> Pass<'j, 'a> {
         let effort = Effort::of_round(round);
         attempt(effort).or_else(|mut chords| {
             chords.retain(|&(edge, chord)| self.can_be_finer(&edges[edge as usize], chord as usize));
-            // Chords as short as points do not help: better what there is now than the same after more rounds.
+            // Chords as short as points do not help: better what there is now than the same after more
+            // rounds.
             if chords.is_empty() { attempt(effort.with_final_edges()) } else { Err(chords) }
         })
     }
@@ -176,8 +180,8 @@ impl<'j, 'a> Pass<'j, 'a> {
         length > self.job.resolution || samples.sag[chord] > self.job.resolution
     }
 
-    /// Meshes all faces; those that ask for finer edges, and their neighbours, again. `done` gets the number of faces
-    /// that are finished for the first time.
+    /// Meshes all faces; those that ask for finer edges, and their neighbours, again. `done` gets the number
+    /// of faces that are finished for the first time.
     pub fn run(&self, done: &(dyn Fn(usize) + Sync)) -> PassResult {
         let (edges, edge_faults) = self.sample_edges();
         self.run_with(edges, edge_faults, done)

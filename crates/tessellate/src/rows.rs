@@ -1,10 +1,11 @@
-//! Size and place: rows of points inside a doubly curved face, staggered, at the spacing that the curvature allows.
+//! Size and place: rows of points inside a doubly curved face, staggered, at the spacing that the curvature
+//! allows.
 //!
 //! In units of the longest allowed chord (sagitta ε, for the fewest triangles see `docs/report.md`):
-//! - K > 0: a triangle must fit in a circle of diameter 1. Equilateral: base √3/2, height 3/4. Where rows are nearer together
-//!   (h < 3/4, because a whole number of them must fit) the base may grow to 2√(h − h²), up to 1.
+//! - K > 0: a triangle must fit in a circle of diameter 1. Equilateral: base √3/2, height 3/4. Where rows are
+//!   nearer together (h < 3/4, because a whole number of them must fit) the base may grow to 2√(h − h²), up
+//!   to 1.
 //! - K < 0: only edges matter. Base 1, height √5/2, apex over the middle: the largest triangle there is.
-//! - Where rows run across principal directions they are sheared along with them.
 //!
 //! Rows are lines of one parameter, chosen so that their distance varies least along them.
 
@@ -15,60 +16,91 @@ use crate::surface::FaceSurface;
 use crate::unroll::Chart;
 use chordal_nurbs::{DVec2, UvBox};
 
-/// How much of an allowed chord is used: the curvature varies over a triangle, and a triangle that fails costs more.
+/// The share of an allowed chord that is used. The curvature varies over a triangle, and a triangle that
+/// fails costs more than the few that a smaller share adds.
 const SAFETY: f64 = 0.97;
 
-/// Samples of the sizing per direction.
+/// Base and height of the equilateral triangle in a circle of diameter 1: √3/2 and 3/4.
+const EQUILATERAL_BASE: f64 = 0.866;
+const EQUILATERAL_HEIGHT: f64 = 0.75;
+
+/// Base of a triangle that is limited by the absolute curvature, by angle or by length: a little less than
+/// the equilateral one, so that diagonals are within the limit as well.
+const ABSOLUTE_BASE: f64 = 0.85;
+
+/// Height of the largest triangle over a base of 1 where the Gaussian curvature is negative: √5/2.
+const HYPERBOLIC_HEIGHT: f64 = 1.118;
+
+/// A row is near an asymptotic direction if its signed curvature is below this share of the absolute one. A
+/// smaller share makes needles there.
+const ASYMPTOTIC: f64 = 0.4;
+
+/// The largest logarithm of a ratio of heights that counts for the unevenness of rows, so that one singular
+/// place does not decide.
+const LARGEST_SPREAD: f64 = 50.0;
+
+/// This share of a row more than a whole number makes no further row, and of a step no further point:
+/// rounding, and facets a little over the limit, which the proof mends.
+const NEARLY_A_ROW: f64 = 0.05;
+const NEARLY_A_STEP: f64 = 0.1;
+
+/// Pieces of a row shorter than this many steps get no point: the boundary suffices.
+const SHORTEST_ROW: f64 = 0.3;
+
+/// Pieces of a row with more steps than this get none: the sizing is meaningless there, and the proof places
+/// points.
+const LONGEST_ROW: f64 = 1e6;
+
+/// Samples of the sizing in each direction. Fewer miss short bends; the cost grows with the square.
 const GRID: usize = 12;
 
-/// Spacing that the sizing allows for rows along one axis.
+/// The spacing of points for rows along one axis.
 #[derive(Clone, Copy, Debug)]
 struct Spacing {
-    /// Distance of points along the row.
+    /// Distance between the points of a row.
     base: f64,
     /// Distance to the next row.
     height: f64,
-    /// How far along the row the next row's points lie, per unit of the other parameter.
-    shear: f64,
     positive: bool,
 }
 
 impl Spacing {
-    /// For rows along `axis`.
+    /// The spacing for rows along `axis`.
     fn new(sizing: &Sizing, axis: usize, limits: &Limits) -> Self {
         let pick =
             |m: &crate::metric::Metric| if axis == 0 { (m.uu, m.uv, m.vv) } else { (m.vv, m.uv, m.uu) };
         let (along, mixed, across) = pick(&sizing.metric);
         let (q_along, q_mixed, q_across) = pick(&sizing.signed);
         let tiny = 1e-300;
-        // What any edge may be by angle and length, and by the absolute curvature, with a little left for diagonals.
+        // The longest edge by angle, length and absolute curvature, with a little left for diagonals.
         let reduced = (across - mixed * mixed / along.max(tiny)).max(0.0);
         let by_metric =
             |base: f64, height: f64| (base / along.max(tiny).sqrt(), height / reduced.max(tiny).sqrt());
         let positive = sizing.gauss > 0.0;
         let bent_by_angle = limits.angle.is_finite() || limits.length.is_finite();
         if positive {
-            let (base, height) = by_metric(0.866, 0.75);
-            return Self { base, height, shear: -mixed / along.max(tiny), positive };
+            let (base, height) = by_metric(EQUILATERAL_BASE, EQUILATERAL_HEIGHT);
+            return Self { base, height, positive };
         }
         let q_reduced = q_across - q_mixed * q_mixed / q_along;
-        // Nearly along an asymptote the base could grow without end: there the absolute metric decides.
-        let asymptotic = !(q_along.abs() > 0.4 * along);
+        // Near an asymptotic direction the base could grow without limit: the absolute curvature decides
+        // there.
+        let asymptotic = !(q_along.abs() > ASYMPTOTIC * along);
         if asymptotic || bent_by_angle {
-            let (base, height) = by_metric(0.85, 0.75);
-            return Self { base, height, shear: -mixed / along.max(tiny), positive };
+            let (base, height) = by_metric(ABSOLUTE_BASE, EQUILATERAL_HEIGHT);
+            return Self { base, height, positive };
         }
         let base = 1.0 / q_along.abs().sqrt();
-        Self { base, height: 1.118 / q_reduced.abs().max(tiny).sqrt(), shear: -q_mixed / q_along, positive }
+        Self { base, height: HYPERBOLIC_HEIGHT / q_reduced.abs().max(tiny).sqrt(), positive }
     }
 }
 
-/// Points to insert, as rows; each row from one end to the other.
+/// The points to insert, row by row; each row runs from one end to the other.
 pub(crate) struct Rows {
     pub rows: Vec<Vec<DVec2>>,
 }
 
-/// A face seen with rows along the first coordinate.
+/// A face in coordinates along and across the rows.
 struct Placer<'a, 's> {
     surface: &'a FaceSurface<'s>,
     limits: &'a Limits,
@@ -84,13 +116,13 @@ fn turned(p: DVec2, axis: usize) -> DVec2 {
 }
 
 impl Rows {
-    /// Rows for the face in this chart; none where the boundary suffices.
+    /// The rows of the face in this chart; none where the boundary suffices.
     pub fn new(surface: &FaceSurface<'_>, chart: &Chart, limits: &Limits) -> Self {
         let placers = [0, 1].map(|axis| Placer::new(surface, chart, limits, axis));
         let plans: Vec<_> = placers.iter().map(|p| (p, p.plan())).collect();
         let enough = plans.iter().all(|(_, plan)| plan.strips <= 1.0 + 1e-6)
             || plans.iter().any(|(_, p)| p.strips == 0.0);
-        // Rows along u unless those along v are clearly better: rounding must not decide.
+        // Rows run along u unless those along v are clearly better, so that rounding does not decide.
         let better = |a: &Plan, b: &Plan| a.unevenness < b.unevenness - 1e-9 * (1.0 + b.unevenness);
         let Some((placer, plan)) =
             plans.into_iter().reduce(|best, next| if better(&next.1, &best.1) { next } else { best })
@@ -103,7 +135,8 @@ impl Rows {
         Self { rows: placer.rows(&plan) }
     }
 
-    /// The points in an order that keeps a growing triangulation balanced: ever denser rounds, each along the rows.
+    /// The points in an order that keeps a growing triangulation balanced: in rounds, each denser than the
+    /// last, and each along the rows.
     pub fn insertion_order(&self) -> Vec<DVec2> {
         let mut rounds: Vec<Vec<DVec2>> = vec![Vec::new(); 12];
         let mut k = 0u32;
@@ -120,15 +153,14 @@ impl Rows {
     }
 }
 
-/// How a face would be cut into rows.
+/// How a face is cut into rows.
 struct Plan {
-    /// Places across and the strips needed up to there.
+    /// Places across the rows, and the number of rows needed up to there.
     across: Vec<f64>,
     strips_up_to: Vec<f64>,
     strips: f64,
-    /// How much the distance of rows varies along them: the mean spread of its logarithm.
+    /// How much the distance between rows varies along them: the mean spread of its logarithm.
     unevenness: f64,
-    shear: f64,
 }
 
 impl<'a, 's> Placer<'a, 's> {
@@ -164,10 +196,8 @@ impl<'a, 's> Placer<'a, 's> {
 
     fn plan(&self) -> Plan {
         let (low, high) = (self.bounds.min.y, self.bounds.max.y);
-        let mut plan =
-            Plan { across: vec![low], strips_up_to: vec![0.0], strips: 0.0, unevenness: 0.0, shear: 0.0 };
+        let mut plan = Plan { across: vec![low], strips_up_to: vec![0.0], strips: 0.0, unevenness: 0.0 };
         let mut weight = 0.0;
-        let mut shears = Vec::new();
         for k in 0..GRID {
             let across = low + (high - low) * (k as f64 + 0.5) / GRID as f64;
             let mut heights = Vec::with_capacity(GRID);
@@ -179,7 +209,6 @@ impl<'a, 's> Placer<'a, 's> {
                     if at <= to - from {
                         if let Some(s) = self.spacing(DVec2::new(from + at, across)) {
                             heights.push(s.height);
-                            shears.push(s.shear);
                         }
                         break;
                     }
@@ -191,7 +220,7 @@ impl<'a, 's> Placer<'a, 's> {
                 Some(&height) => {
                     let spread = (heights[heights.len() - 1] / heights[0]).ln();
                     let share = (high - low) / GRID as f64 / height;
-                    plan.unevenness += spread.min(50.0) * share;
+                    plan.unevenness += spread.min(LARGEST_SPREAD) * share;
                     weight += share;
                     share
                 }
@@ -202,13 +231,11 @@ impl<'a, 's> Placer<'a, 's> {
             plan.strips_up_to.push(plan.strips);
         }
         plan.unevenness /= weight.max(1e-300);
-        shears.sort_by(f64::total_cmp);
-        plan.shear = shears.get(shears.len() / 2).copied().unwrap_or(0.0);
         plan
     }
 
     fn rows(&self, plan: &Plan) -> Vec<Vec<DVec2>> {
-        let count = (plan.strips - 0.05).ceil().max(1.0) as usize;
+        let count = (plan.strips - NEARLY_A_ROW).ceil().max(1.0) as usize;
         let tightness = plan.strips / count as f64;
         let mut rows = Vec::with_capacity(count);
         let mut at = 0;
@@ -239,9 +266,9 @@ impl<'a, 's> Placer<'a, 's> {
         for i in 0..PROBES {
             let spacing = self.spacing(DVec2::new(from + (i as f64 + 0.5) * width, across));
             let step = spacing.map_or(0.0, |s| {
-                let h = 0.75 * tightness;
+                let h = EQUILATERAL_HEIGHT * tightness;
                 let stretch = if s.positive {
-                    (2.0 * (h - h * h).max(0.0).sqrt() / 0.866).clamp(1.0, 1.0 / 0.866)
+                    (2.0 * (h - h * h).max(0.0).sqrt() / EQUILATERAL_BASE).clamp(1.0, 1.0 / EQUILATERAL_BASE)
                 } else {
                     1.0
                 };
@@ -250,10 +277,10 @@ impl<'a, 's> Placer<'a, 's> {
             sum[i + 1] = sum[i] + step;
         }
         let total = sum[PROBES];
-        if !(total > 0.3) || total > 1e6 {
+        if !(total > SHORTEST_ROW) || total > LONGEST_ROW {
             return;
         }
-        let count = (total - 0.1).ceil().max(1.0);
+        let count = (total - NEARLY_A_STEP).ceil().max(1.0);
         let phase = if k % 2 == 1 { 0.5 } else { 0.0 };
         let mut at = 0;
         let mut i = if phase > 0.0 { 0.0 } else { 1.0 };

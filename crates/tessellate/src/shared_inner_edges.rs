@@ -1,8 +1,10 @@
-//! Inner edges of faces that another face has too: two sides of something thinner than the tolerance.
+//! Inner edges of one face that are also inner edges of another: two sides of something thinner than the
+//! tolerance.
 //!
-//! Where two faces run along one another within the tolerance (a trailing edge, a rib that tapers off), both may join the same
-//! two vertices of their common boundary. The mesh would have an edge with four triangles, or the same triangle twice. In all
-//! but one of the faces such an edge gets a point of its own in its middle, which lies on that face's surface.
+//! Where two faces run along each other within the tolerance (a trailing edge, a rib that tapers off), both
+//! may connect the same two vertices of their common boundary. The mesh would have an edge with four
+//! triangles, or the same triangle twice. All but one of the faces are meshed again without this edge: they
+//! insert a point in its middle, which lies on their own surface.
 
 use crate::face_result::{Meshed, is_unproven};
 use crate::keys::{Key, SharedEdge, sorted};
@@ -11,10 +13,11 @@ use crate::rounds::{Pass, PassResult};
 use chordal_nurbs::Surface;
 use rayon::prelude::*;
 
-/// Rounds in which faces give up edges that others have too: a face that is meshed again may share another edge.
+/// Rounds in which faces give up such edges: a face that is meshed again may share another one. What is
+/// shared after the last round is left to the audit.
 const SEPARATING_ROUNDS: usize = 3;
 
-/// Meshes faces again that have an inner edge which another face has too.
+/// Meshes faces again that share an inner edge with another face.
 pub(crate) fn separate(pass: &Pass<'_, '_>, result: &mut PassResult) {
     let job = pass.job;
     let is_flat = |face: u32| {
@@ -26,7 +29,7 @@ pub(crate) fn separate(pass: &Pass<'_, '_>, result: &mut PassResult) {
     for _ in 0..SEPARATING_ROUNDS {
         let uses = |edge: u32| job.faces_at(edge as usize);
         let mut more = shared_inner_edges(&result.faces, single_chords(result, pass), uses, is_flat);
-        // A face of which nothing is proven has worse faults, and takes long.
+        // A face without a proof has worse faults, and takes long.
         more.retain(|&(face, _)| !unproven[face as usize]);
         if more.is_empty() || job.cancel.is_cancelled() {
             return;
@@ -41,7 +44,7 @@ pub(crate) fn separate(pass: &Pass<'_, '_>, result: &mut PassResult) {
         };
         let meshed: Vec<_> = again.into_par_iter().map(mesh).collect();
         for (face, new) in meshed {
-            // What was proven stays proven.
+            // A proven face is replaced by a proven one only.
             if let Ok(Ok(new)) = new
                 && !is_unproven(&new, &job.limits, job.options.bound)
             {
@@ -63,7 +66,7 @@ fn single_chords<'a>(
     })
 }
 
-/// Of every face: it has no triangles, or no proof where one is asked for.
+/// Of every face: true where it has no triangles, or no proof although one is asked for.
 pub(crate) fn unproven_faces(job: &PartJob<'_>, faces: &[Meshed]) -> Vec<bool> {
     let is_unproven = |(face, meshed): (usize, &Meshed)| match meshed {
         Err(_) => job.unusable(face).is_none(),
@@ -72,8 +75,9 @@ pub(crate) fn unproven_faces(job: &PartJob<'_>, faces: &[Meshed]) -> Vec<bool> {
     faces.iter().enumerate().map(is_unproven).collect()
 }
 
-/// For faces, in order, the inner edges that they must give up. `chords`: edges of the part of a single chord; `uses`: the faces at
-/// every edge of the part; `is_flat`: faces that keep an edge rather than another.
+/// For faces, in order, the inner edges that they must give up. `chords`: edges of the part of a single
+/// chord; `uses`: the faces at every edge of the part; `is_flat`: faces that keep an edge rather than
+/// another.
 fn shared_inner_edges<I: Iterator<Item = usize>>(
     faces: &[Meshed],
     chords: impl Iterator<Item = SharedEdge>,
@@ -94,7 +98,7 @@ fn shared_inner_edges<I: Iterator<Item = usize>>(
     let mut given_up = Vec::new();
     for group in sides.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1) {
         let mut inner: Vec<u32> = group.iter().map(|side| side.1).filter(|&f| f != CHORD).collect();
-        // One face may keep it, unless it is a chord of an edge of the part.
+        // One face may keep the edge, unless it is a chord of an edge of the part.
         let kept = usize::from(inner.len() == group.len());
         inner.dedup();
         inner.sort_by_key(|&f| (!is_flat(f), f));
@@ -104,7 +108,7 @@ fn shared_inner_edges<I: Iterator<Item = usize>>(
     given_up
 }
 
-/// Stands for a face.
+/// Stands for a chord of the part in place of a face.
 const CHORD: u32 = u32::MAX;
 
 /// False where no two faces lie at both of its ends.
@@ -117,7 +121,7 @@ fn have_two_faces<I: Iterator<Item = usize>>(pair: SharedEdge, uses: impl Fn(u32
     }
 }
 
-/// Numbers to sort by: quicker than keys.
+/// Numbers in place of keys, which sort faster.
 fn packed(pair: SharedEdge) -> [u64; 2] {
     pair.map(|key| match key {
         Key::Vertex(v) => u64::from(v),

@@ -1,9 +1,9 @@
-//! A face's surface as the stages see it: charts may run over the seam of a closed surface, evaluation wraps.
+//! The surface of a face, evaluated in its chart: charts may reach over the seam of a closed surface.
 
 use chordal_nurbs::{DVec2, DVec3, Pole, Surface, SurfaceInverter, SurfaceJet, UvBox, Wrap};
 use std::sync::OnceLock;
 
-/// The surface of one face with what is asked of it over and over.
+/// The surface of one face, with what the stages need often.
 #[derive(Debug)]
 pub struct FaceSurface<'a> {
     pub surface: &'a Surface,
@@ -11,13 +11,14 @@ pub struct FaceSurface<'a> {
     pub poles: Vec<Pole>,
     /// Points nearer together than this are one point.
     pub resolution: f64,
-    /// Values of u and of v at which the normal turns at once.
+    /// Values of u and of v at which the normal changes at once.
     pub creases: [Vec<f64>; 2],
     wrap: Wrap,
     inverter: OnceLock<SurfaceInverter<'a>>,
 }
 
-/// Where on a surface a point lies, and how far off it the last one lay that was searched for all over it.
+/// The parameters of the point of a surface nearest to some point, with a distance that inversion of the next
+/// point may start from.
 #[derive(Clone, Copy, Debug)]
 pub struct Near {
     pub uv: DVec2,
@@ -30,7 +31,7 @@ impl Near {
     }
 }
 
-/// Inversion is that good, as a share of the domain.
+/// Inversion is exact to this share of the domain.
 const BESIDE_SIDE: f64 = 1e-9;
 
 impl<'a> FaceSurface<'a> {
@@ -51,7 +52,7 @@ impl<'a> FaceSurface<'a> {
         self.wrap.point(self.surface, p_uv)
     }
 
-    /// The same point of the surface in its own domain.
+    /// The parameters of the same point in the domain of the surface.
     pub fn wrapped(&self, p_uv: DVec2) -> DVec2 {
         self.wrap.apply(p_uv)
     }
@@ -60,29 +61,29 @@ impl<'a> FaceSurface<'a> {
         self.wrap.jet(self.surface, p_uv)
     }
 
-    /// The unit normal at a point whose jet is known; where it is undefined, zero.
+    /// The unit normal at a point whose derivatives are known; zero where it is undefined.
     pub fn normal_at(&self, p_uv: DVec2, jet: &SurfaceJet) -> DVec3 {
         self.surface.normal_of(self.wrap.apply(p_uv), jet).unwrap_or(DVec3::ZERO)
     }
 
-    /// The unit normal; where it is undefined, zero.
+    /// The unit normal; zero where it is undefined.
     pub fn normal(&self, p_uv: DVec2) -> DVec3 {
         self.surface.normal(self.wrap.apply(p_uv)).unwrap_or(DVec3::ZERO)
     }
 
-    /// True for the surfaces whose closest point has a closed form: their pcurves need not be read.
+    /// True for surfaces whose closest point has a closed form: their pcurves need not be read.
     pub fn is_elementary(&self) -> bool {
         use Surface::{Cone, Cylinder, Plane, Sphere, Torus};
         matches!(self.surface, Plane { .. } | Cylinder { .. } | Cone { .. } | Sphere { .. } | Torus { .. })
     }
 
-    /// The nearest point's parameters, in the turn nearest to `near`.
+    /// The parameters of the nearest point, in the period nearest to `near`.
     pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> DVec2 {
         self.invert_from(p_xyz, near.map(Near::on_surface)).uv
     }
 
-    /// As [`Self::invert`], for one point after the other: where those before lay off the surface, a point as far off in the
-    /// same valley is not searched for all over it.
+    /// Inverts one point after another, as [`Self::invert`] does. If the last point lay off the surface, a
+    /// point that is as far off near the same place is not searched for on the whole surface.
     pub fn invert_from(&self, p_xyz: DVec3, near: Option<Near>) -> Near {
         if self.is_elementary() {
             return Near::on_surface(self.surface.invert(p_xyz, near.map(|n| n.uv)));
@@ -99,7 +100,8 @@ impl<'a> FaceSurface<'a> {
         }
     }
 
-    /// The point nearest to `p_xyz` in the valley that `start` lies in: a few Gauss–Newton steps, no search.
+    /// The parameters of a local minimum of the distance to `p_xyz`, by a few Gauss–Newton steps from
+    /// `start`.
     pub fn descend(&self, p_xyz: DVec3, start: DVec2) -> DVec2 {
         const STEPS: usize = 3;
         let mut uv = start;
@@ -118,7 +120,7 @@ impl<'a> FaceSurface<'a> {
         uv
     }
 
-    /// A place that only rounding keeps off a side of the domain is on it.
+    /// Moves a place onto a side of the domain if only rounding keeps it off.
     fn on_side(&self, mut p_uv: DVec2) -> DVec2 {
         let UvBox { min, max } = self.domain();
         for axis in 0..2 {
@@ -132,7 +134,7 @@ impl<'a> FaceSurface<'a> {
         p_uv
     }
 
-    /// Held to the domain in directions that are not closed.
+    /// The place, clamped to the domain in directions that are not closed.
     pub fn inside(&self, p_uv: DVec2) -> DVec2 {
         let held = self.domain().clamp(p_uv);
         DVec2::new(
@@ -141,20 +143,20 @@ impl<'a> FaceSurface<'a> {
         )
     }
 
-    /// The same point of the surface, moved by whole periods to be nearest to `near`.
+    /// The parameters of the same point, moved by whole periods to be nearest to `near`.
     pub fn nearest_turn(&self, p_uv: DVec2, near: DVec2) -> DVec2 {
         let turn =
             |t: f64, near: f64, period: Option<f64>| period.map_or(t, |p| t + p * ((near - t) / p).round());
         DVec2::new(turn(p_uv.x, near.x, self.periods[0]), turn(p_uv.y, near.y, self.periods[1]))
     }
 
-    /// How far a coordinate lies beyond `value`, at the nearest turn of a closed direction.
+    /// How far a coordinate lies beyond `value`, at the nearest period of a closed direction.
     pub fn offset_from(&self, axis: usize, value: f64, p_uv: DVec2) -> f64 {
         let off = p_uv[axis] - value;
         self.periods[axis].map_or(off, |p| off - p * (off / p).round())
     }
 
-    /// The pole at this point of space, where there is one within `distance`.
+    /// The pole within `distance` of this point of space.
     pub fn pole_at(&self, p_xyz: DVec3, distance: f64) -> Option<&Pole> {
         self.poles.iter().find(|pole| pole.point.distance(p_xyz) <= distance)
     }

@@ -1,8 +1,8 @@
 //! The budget of three thirds along trimming curves, against brute force.
 //!
-//! Kahlesz, Balázs, Klein 2001, section 6: random surfaces of several spans, polynomial and rational, random trimming curves on them,
-//! polynomial and rational; the vertices that [`super::in_plane`] makes of them, and how far the curve on the surface is from the
-//! polyline through them in space.
+//! Kahlesz, Balázs, Klein 2001, section 6: random surfaces of several spans, polynomial and rational, random
+//! trimming curves on them, polynomial and rational; the vertices that [`super::in_plane`] makes of them, and
+//! how far the curve on the surface is from the polyline through them in space.
 
 use super::curve::{Source, TrimmingCurve};
 use super::in_plane::stops;
@@ -27,7 +27,8 @@ fn clamped(degree: usize, inner: &[f64]) -> Vec<f64> {
     knots
 }
 
-/// Degrees to 20, weights from 1e-3 to 1e3, sheets with relief over a square of side 3 and one inner knot in each direction.
+/// Degrees to 20, weights from 1e-3 to 1e3, sheets with relief over a square of side 3 and one inner knot in
+/// each direction.
 fn trimmed(degrees: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Trimmed> {
     let net = prop::collection::vec((-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0, -3.0f64..3.0), 22 * 22);
     let curve = prop::collection::vec((0.0f64..1.0, 0.0f64..1.0, -1.0f64..1.0), 2..6);
@@ -101,7 +102,8 @@ fn a_third_goes_to_the_twist() {
     }
 }
 
-/// δ: over a plane square the curve may bulge by κ/3 from its chord, which half of its middle control point does.
+/// δ: over a plane square the curve may bulge by κ/3 from its chord, which half of its middle control point
+/// does.
 #[test]
 fn a_third_goes_to_the_curve() {
     let (kappa, side) = (0.3, 7.0);
@@ -114,8 +116,8 @@ fn a_third_goes_to_the_curve() {
     }
 }
 
-/// With unlike weights a straight curve over a plane square bends: by Lemma 2 as it stands nothing would be off, and it would stay
-/// one chord.
+/// With unlike weights a straight curve over a plane square bends: by Lemma 2 as it stands nothing would be
+/// off, and it would stay one chord.
 #[test]
 fn weights_alone_break_the_budget_of_the_document() {
     let surface = square(1.0, [0.0; 4], Some(vec![1.0, 1.0, 1.0, 1e3]));

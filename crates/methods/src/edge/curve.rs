@@ -2,11 +2,12 @@
 //!
 //! Source: Balázs, Guthe, Klein 2004, section 4. Three ways, in this order:
 //!
-//! 1. *The file's curve*, exactly, where the NURBS form has the surface's own parameters and the curve agrees with the edge.
+//! 1. *The file's curve*, exactly, where the NURBS form has the surface's own parameters and the curve agrees
+//!    with the edge.
 //! 2. *The edge itself*, exactly, on planes.
-//! 3. *Fitted.* Elsewhere (no curve in the file, or angles that the NURBS form turns into rational parameters) the edge is
-//!    followed on the surface and fitted by cubics within a hundredth of the tolerance. The chords are proven against
-//!    the edge's own curve afterwards, so this costs chords at most.
+//! 3. *Fitted.* Elsewhere (no curve in the file, or angles that the NURBS form turns into rational
+//!    parameters) the edge is followed on the surface and fitted by cubics within a hundredth of the
+//!    tolerance. The chords are proven against the edge's own curve afterwards, so this costs chords at most.
 
 use chordal_nurbs::{BezierCurve, DVec2, NurbsParameters, NurbsSurface, ParameterMap, Range, Surface, UvBox};
 use chordal_tessellate::method::{EdgePiece, EdgeUse, Near};
@@ -60,7 +61,8 @@ const MARGIN: f64 = 0.02;
 const AT_END: f64 = 1e-6;
 
 impl TrimmingCurve {
-    /// The curve of a piece of an edge on one of its faces; `None` where the surface has no exact NURBS form there.
+    /// The curve of a piece of an edge on one of its faces; `None` where the surface has no exact NURBS form
+    /// there.
     pub fn new(edge: &EdgePiece<'_>, one: &EdgeUse<'_, '_>) -> Option<Self> {
         Self::from_file(edge, one).or_else(|| Self::in_plane(edge, one)).or_else(|| Self::fitted(edge, one))
     }

@@ -1,12 +1,12 @@
 //! Trimming curves approximated in the plane of parameters.
 //!
-//! Source: Kahlesz, Balázs, Klein 2001, section 6, which Balázs, Guthe, Klein 2004 compare with (Table 2, *2d Bézier*). The
-//! surface is quartered until its error is within ε = κ/3; the curve is cut at the borders of the leaves, and over each leaf it
-//! may lie δ = (κ − 2ε)/‖bl‖ from its chord, lengths counted in the leaf's own parameters. Only leaves under the curve
-//! are made.
+//! Source: Kahlesz, Balázs, Klein 2001, section 6, which Balázs, Guthe, Klein 2004 compare with (Table 2, *2d
+//! Bézier*). The surface is quartered until its error is within ε = κ/3; the curve is cut at the borders of
+//! the leaves, and over each leaf it may lie δ = (κ − 2ε)/‖bl‖ from its chord, lengths counted in the leaf's
+//! own parameters. Only leaves under the curve are made.
 //!
-//! The document adds up the surface at two points of the plane. The sum holds for the chord in space, too: with E the distance of leaf
-//! and bilinear surface at equal parameters and T the twist,
+//! The document adds up the surface at two points of the plane. The sum holds for the chord in space, too:
+//! with E the distance of leaf and bilinear surface at equal parameters and T the twist,
 //!
 //! ```text
 //! curve – bilinear surface over it      E
@@ -15,8 +15,8 @@
 //!                                       2E + ¼‖T‖ + κ/3 ≤ κ      as E + ¼‖T‖ ≤ ε
 //! ```
 //!
-//! The document's Lemma 2 bounds E for polynomial leaves only. Over rational ones points slide along the bilinear surface by as much
-//! as weights differ, so E is bounded with them ([`off_bilinear`]).
+//! The document's Lemma 2 bounds E for polynomial leaves only. Over rational ones points slide along the
+//! bilinear surface by as much as weights differ, so E is bounded with them ([`off_bilinear`]).
 
 use super::curve::TrimmingCurve;
 use crate::fill::node::{Bilinear, off_bilinear};

@@ -1,8 +1,8 @@
 //! Trimming curves lifted into space, and polylines of them.
 //!
-//! Source: Balázs, Guthe, Klein 2004, sections 4 and 5.1. Simplification runs over all pieces at once: where they end at knot
-//! lines of the surface, vertices are mostly needless. Curves then get the share γ of the tolerance, simplification the
-//! rest; both are Hausdorff distances, so the sum is one.
+//! Source: Balázs, Guthe, Klein 2004, sections 4 and 5.1. Simplification runs over all pieces at once: where
+//! they end at knot lines of the surface, vertices are mostly needless. Curves then get the share γ of the
+//! tolerance, simplification the rest; both are Hausdorff distances, so the sum is one.
 
 use super::curve::TrimmingCurve;
 use super::simplify::simplified;

@@ -1,12 +1,13 @@
 //! Loops without crossings from loops that cross.
 //!
-//! Source: Bentley and Ottmann 1979 for the sweep; Balázs, Guthe, Klein 2004, section 5.1, for what is made of it: a vertex at every
-//! crossing, then loops that do not cross. Here:
+//! Source: Bentley and Ottmann 1979 for the sweep; Balázs, Guthe, Klein 2004, section 5.1, for what is made
+//! of it: a vertex at every crossing, then loops that do not cross. Here:
 //!
-//! 1. A sweep along x finds sides that cross, or that a vertex of another one lies on; both get a vertex there. Vertices at
-//!    crossings are rounded, so sides may move across others; the sweep is repeated until it finds nothing.
-//! 2. Where several strands meet at a vertex, they are joined anew so that none crosses another: around the vertex, an
-//!    arriving and a leaving side that are neighbours belong together, are taken out, and so on.
+//! 1. A sweep along x finds sides that cross, or that a vertex of another one lies on; both get a vertex
+//!    there. Vertices at crossings are rounded, so sides may move across others; the sweep is repeated until
+//!    it finds nothing.
+//! 2. Where several strands meet at a vertex, they are joined anew so that none crosses another: around the
+//!    vertex, an arriving and a leaving side that are neighbours belong together, are taken out, and so on.
 //!
 //! ```text
 //!   ╲   ╱        ╲   ╱
@@ -166,8 +167,8 @@ fn joined(sides: &[[DVec2; 2]]) -> Vec<Vec<DVec2>> {
     loops
 }
 
-/// Strands of one vertex counter-clockwise, from the direction of −x on; exact. Sides that lie on each other come at one of
-/// their ends in the order opposite to that at the other, as strands side by side do.
+/// Strands of one vertex counter-clockwise, from the direction of −x on; exact. Sides that lie on each other
+/// come at one of their ends in the order opposite to that at the other, as strands side by side do.
 fn around(sides: &[[DVec2; 2]], x: (usize, bool), y: (usize, bool)) -> Ordering {
     let ends = |(side, leaves): (usize, bool)| {
         let [a, b] = sides[side];

@@ -2,12 +2,13 @@
 //!
 //! Source: Ma and Hewitt 2002, sections 4.1 to 4.5:
 //!
-//! 1. The surface is split by knot refinement to the box of the outer loop, then into Bézier patches, recursively until their nets
-//!    are flat ([`super::projected`]).
+//! 1. The surface is split by knot refinement to the box of the outer loop, then into Bézier patches,
+//!    recursively until their nets are flat ([`super::projected`]).
 //! 2. Scanlines and quadtrees of the loops tell patches inside, outside and cut apart ([`super::scanlines`]).
-//! 3. Patches inside are quadrilaterals. Those with points of smaller neighbours in their sides become triangles (its Figure 5):
-//!    three with one such point, n + 4 around a point in the middle with n of them.
-//! 4. What lies between these patches and the loops is closed with triangles, all of one orientation ([`super::cut`]).
+//! 3. Patches inside are quadrilaterals. Those with points of smaller neighbours in their sides become
+//!    triangles (its Figure 5): three with one such point, n + 4 around a point in the middle with n of them.
+//! 4. What lies between these patches and the loops is closed with triangles, all of one orientation
+//!    ([`super::cut`]).
 //!
 //! ```text
 //!   o─────o    o──+──o    o─────o     o corners
@@ -134,7 +135,8 @@ struct Closed {
     triangulated: usize,
 }
 
-/// Makes the triangles of every polygon between fixed edges: of patches inside by Figure 5, of all others as they are.
+/// Makes the triangles of every polygon between fixed edges: of patches inside by Figure 5, of all others as
+/// they are.
 fn close(face: &mut FaceMesh<'_, '_>, fixed: &FxHashSet<(u32, u32)>, whole: &[UvBox]) -> Closed {
     let metric = mean_metric(face.surface(), UvBox::from_points(face.mesh().points.iter().copied()));
     let by_corner = by_corner(whole);

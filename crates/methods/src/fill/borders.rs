@@ -1,7 +1,8 @@
-//! The borders of rectangular cells as a graph: unique corners, and sides cut wherever another cell has a corner on them.
+//! The borders of rectangular cells as a graph: unique corners, and sides cut wherever another cell has a
+//! corner on them.
 //!
-//! The corner of a small cell in the side of a large one (a T-vertex) becomes a vertex of both, so no crack can open between
-//! them. Source: Kahlesz, Balázs, Klein 2001, section 2 (unique vertices, `splitEdge`).
+//! The corner of a small cell in the side of a large one (a T-vertex) becomes a vertex of both, so no crack
+//! can open between them. Source: Kahlesz, Balázs, Klein 2001, section 2 (unique vertices, `splitEdge`).
 
 use chordal_nurbs::{DVec2, UvBox};
 
@@ -12,7 +13,8 @@ pub struct Borders {
     pub corners: Vec<DVec2>,
     /// The extent of the smallest cell at each corner.
     pub extent: Vec<DVec2>,
-    /// Pieces of sides between successive corners (along u where both have the same v), each once, smaller index first.
+    /// Pieces of sides between successive corners (along u where both have the same v), each once, smaller
+    /// index first.
     pub pieces: Vec<(u32, u32)>,
     /// The corners by u, then by v.
     columns: Vec<u32>,
@@ -66,8 +68,8 @@ impl Borders {
         Self { corners, extent, pieces, columns }
     }
 
-    /// The corners around a cell, counter-clockwise from its lower left one; corners of smaller neighbours in its sides
-    /// included.
+    /// The corners around a cell, counter-clockwise from its lower left one; corners of smaller neighbours in
+    /// its sides included.
     pub fn ring(&self, cell: UvBox) -> Vec<u32> {
         let row = |p: DVec2| self.corners.partition_point(|q| by_rows(q, &(p + 0.0)).is_lt());
         let corner = |i: u32| &self.corners[i as usize];

@@ -1,6 +1,7 @@
 //! The methods' bounds against closed forms and brute force, and how tight they are.
 //!
-//! Patches of degree 1 to 20, half of them rational with weights from 1e-3 to 1e3, wild ones and sheets with a little relief.
+//! Patches of degree 1 to 20, half of them rational with weights from 1e-3 to 1e3, wild ones and sheets with
+//! a little relief.
 
 use super::derivatives::SecondNorms;
 use super::node::{Bilinear, Flatness, Measure, off_bilinear};
@@ -31,7 +32,8 @@ fn largest_off_bilinear(s: &NurbsSurface, n: usize) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
-    /// Kahlesz, Balázs, Klein 2001, Lemma 1: at equal parameters both pairs of triangles are off by ¼‖T‖, and no more anywhere.
+    /// Kahlesz, Balázs, Klein 2001, Lemma 1: at equal parameters both pairs of triangles are off by ¼‖T‖, and
+    /// no more anywhere.
     #[test]
     fn lemma_1_is_exact_for_either_diagonal(c in prop::collection::vec((-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0), 4)) {
         let s = twisted(&c);
@@ -51,14 +53,15 @@ proptest! {
         }
     }
 
-    /// Lemma 2, rational patches included: the projected control points bound the distance from the bilinear surface only with the
-    /// twist beside them.
+    /// Lemma 2, rational patches included: the projected control points bound the distance from the bilinear
+    /// surface only with the twist beside them.
     #[test]
     fn lemma_2_bounds_the_distance_from_the_bilinear_surface(s in patches()) {
         let f = Flatness::new(&s, Measure::Conservative);
         let allowed = if s.weights().is_some() { f.error } else { f.bilinear };
         let found = largest_off_bilinear(&s, 16);
-        // A rational patch slides along the bilinear surface: there the nearest point counts, not the one at equal parameters.
+        // A rational patch slides along the bilinear surface: there the nearest point counts, not the one at
+        // equal parameters.
         if s.weights().is_none() {
             prop_assert!(found <= allowed * (1.0 + 1e-9) + 1e-12, "{found} > {allowed}");
         }
@@ -66,8 +69,8 @@ proptest! {
         prop_assert!(halves <= f.error * (1.0 + 1e-9) + 1e-12, "{halves} > {}", f.error);
     }
 
-    /// What takes the place of Lemma 2 where parameters count: never below what is found at equal ones, whatever the weights, and never
-    /// above Lemma 2 without them.
+    /// What takes the place of Lemma 2 where parameters count: never below what is found at equal ones,
+    /// whatever the weights, and never above Lemma 2 without them.
     #[test]
     fn the_bilinear_surface_is_as_near_at_equal_parameters(s in patches()) {
         let bound = off_bilinear(&s);
@@ -80,7 +83,8 @@ proptest! {
         prop_assert!(off_bilinear(&weighted) <= lemma_2 * (1.0 + 1e-12));
     }
 
-    /// Facets over a leaf that is cut by a curve: any triangle with its corners on the leaf is within 2E + ¼‖T‖ at equal parameters.
+    /// Facets over a leaf that is cut by a curve: any triangle with its corners on the leaf is within 2E +
+    /// ¼‖T‖ at equal parameters.
     #[test]
     fn any_triangle_over_a_leaf_is_within_twice_its_share(
         s in patches(),
@@ -106,8 +110,8 @@ proptest! {
     }
 }
 
-/// With all control points on a hyperbolic paraboloid (E = 0) weights alone move the patch off the two halves: further than the ¼‖T‖
-/// that polynomial patches need, never further than ½‖T‖.
+/// With all control points on a hyperbolic paraboloid (E = 0) weights alone move the patch off the two
+/// halves: further than the ¼‖T‖ that polynomial patches need, never further than ½‖T‖.
 #[test]
 fn rational_patches_need_half_the_twist() {
     let mut worst = 0.0f64;
@@ -138,8 +142,9 @@ fn rational_patches_need_half_the_twist() {
     assert!(worst > 0.3 && worst <= 0.5, "{worst}");
 }
 
-/// Equation 3 of Kahlesz, Balázs, Klein 2001 looks at one corner: where all sides leave it together and the opposite corner lies behind
-/// it, the map stretches 2 + √2 times as much at that corner, and never more than that.
+/// Equation 3 of Kahlesz, Balázs, Klein 2001 looks at one corner: where all sides leave it together and the
+/// opposite corner lies behind it, the map stretches 2 + √2 times as much at that corner, and never more than
+/// that.
 #[test]
 fn equation_3_is_too_small_by_two_and_the_root_of_two_at_most() {
     let back = -std::f64::consts::SQRT_2;
@@ -180,8 +185,8 @@ fn print_quantiles<const N: usize>(columns: [&str; N], ratios: &[Vec<[f64; N]>])
     }
 }
 
-/// How tight bounds are: the bound over what was found, median and 95th percentile. Run with `--ignored --nocapture`; the table
-/// stands in docs/methods.md.
+/// How tight bounds are: the bound over what was found, median and 95th percentile. Run with `--ignored
+/// --nocapture`; the table stands in docs/methods.md.
 #[test]
 #[ignore = "prints a table, tests nothing"]
 fn tightness() {
@@ -212,8 +217,9 @@ fn tightness() {
     print_quantiles(columns, &ratios);
 }
 
-/// The same for triangles of any shape, whole ones and such of 1/16 and 1/256 of the patch's side: the proof of facets, second
-/// derivatives over their boxes, and 2E + ¼‖T‖ of the whole patch; and for chords, in one part and in eight.
+/// The same for triangles of any shape, whole ones and such of 1/16 and 1/256 of the patch's side: the proof
+/// of facets, second derivatives over their boxes, and 2E + ¼‖T‖ of the whole patch; and for chords, in one
+/// part and in eight.
 #[test]
 #[ignore = "prints a table, tests nothing"]
 fn tightness_for_triangles() {

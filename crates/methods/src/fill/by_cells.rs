@@ -33,8 +33,8 @@ const TRANSITIONS: [&str; 4] = [
     "curves run along a border (4)",
 ];
 
-/// Uniform subdivisions are halved at most this often: each time costs four times the triangles, and what is still too
-/// coarse then lies where loops cut cells, which smaller cells do not mend.
+/// Uniform subdivisions are halved at most this often: each time costs four times the triangles, and what is
+/// still too coarse then lies where loops cut cells, which smaller cells do not mend.
 const HALVINGS: usize = 1;
 
 impl ByCells {

@@ -1,8 +1,8 @@
 //! The tree of cells over the box of a face's loops, whatever rule cuts them.
 //!
-//! Cells live in the parameters of the surface's NURBS form, their corners also in those of the chart: the two differ by a
-//! monotone map per direction, so lines of constant parameter stay such. A closed spline surface is cut at its seam
-//! first. Cells that the face does not meet are left as they are.
+//! Cells live in the parameters of the surface's NURBS form, their corners also in those of the chart: the
+//! two differ by a monotone map per direction, so lines of constant parameter stay such. A closed spline
+//! surface is cut at its seam first. Cells that the face does not meet are left as they are.
 
 use super::node::Measure;
 use super::region::Region;
@@ -31,8 +31,8 @@ pub trait Rule: Send {
     fn forced(&self, piece: &NurbsSurface, measure: Measure) -> Vec<Split> {
         self.cuts(piece, 0.0, measure)
     }
-    /// How far a trimming curve over this cell may lie from its chord, in the cell's own parameters from 0 to 1; none
-    /// where the method leaves that to the edges.
+    /// How far a trimming curve over this cell may lie from its chord, in the cell's own parameters from 0 to
+    /// 1; none where the method leaves that to the edges.
     fn chord_share(&self, _piece: &NurbsSurface, _tolerance: f64) -> Option<f64> {
         None
     }
@@ -69,14 +69,15 @@ pub struct Cells {
 /// No cell is cut more often than this.
 const DEEPEST: u32 = 60;
 
-/// Cuts lie at multiples of a root's extent over this: computed twice, on both sides of a border, they must be one corner.
+/// Cuts lie at multiples of a root's extent over this: computed twice, on both sides of a border, they must
+/// be one corner.
 const STEPS: f64 = (1u32 << 24) as f64;
 
 /// Cells narrower than this share of the face's box are not cut: their corners would be one.
 const NARROWEST: f64 = 1e-6;
 
-/// The share of the tolerance that surfaces without an exact NURBS form may differ from the one that is subdivided.
-/// The proof is about the surface itself, so this only decides where cells end.
+/// The share of the tolerance that surfaces without an exact NURBS form may differ from the one that is
+/// subdivided. The proof is about the surface itself, so this only decides where cells end.
 const FORM_SHARE: f64 = 0.1;
 
 impl Cells {
@@ -193,7 +194,8 @@ impl Cells {
         (0..self.leaves.len()).filter(|&i| self.leaves[i].met && holds(&self.leaves[i].bounds)).collect()
     }
 
-    /// Replaces a leaf by its parts: the first in its place, the others at the end. False where it cannot be cut.
+    /// Replaces a leaf by its parts: the first in its place, the others at the end. False where it cannot be
+    /// cut.
     fn cut(&mut self, index: usize, cuts: &[Split], region: &Region) -> bool {
         if cuts.is_empty() || self.leaves[index].depth >= DEEPEST {
             return false;
@@ -211,8 +213,8 @@ impl Cells {
         true
     }
 
-    /// The parts of a cell, in the order in which the cuts, one after the other, leave them. Every part goes on with the cuts that
-    /// may still meet it: hundreds of cuts make tens of thousands of parts.
+    /// The parts of a cell, in the order in which the cuts, one after the other, leave them. Every part goes
+    /// on with the cuts that may still meet it: hundreds of cuts make tens of thousands of parts.
     fn parts(&self, cell: Cell, cuts: &[Split], narrowest: DVec2) -> Vec<Cell> {
         let mut parts = Vec::new();
         let mut open = vec![(cell, cuts.to_vec())];

@@ -1,10 +1,11 @@
 //! Chords of trimming curves judged in the plane of parameters, leaf by leaf.
 //!
-//! Source: Kahlesz, Balázs, Klein 2001, section 6: over each leaf a curve may lie as far from its chord as the leaf's stretch of
-//! lengths allows ([`super::quadtree`]). The document cuts curves at the borders of leaves and approximates every piece by itself.
-//! Here the curve over a chord is followed over the leaves in the same way ([`super::tracking`]), but borders set no vertices on
-//! edges: the chord must be near enough to the curve in every leaf that it passes. How near is bounded by the control points
-//! of the piece over the leaf.
+//! Source: Kahlesz, Balázs, Klein 2001, section 6: over each leaf a curve may lie as far from its chord as
+//! the leaf's stretch of lengths allows ([`super::quadtree`]). The document cuts curves at the borders of
+//! leaves and approximates every piece by itself. Here the curve over a chord is followed over the leaves in
+//! the same way ([`super::tracking`]), but borders set no vertices on edges: the chord must be near enough to
+//! the curve in every leaf that it passes. How near is bounded by the control points of the piece over the
+//! leaf.
 
 use super::cells::{Cells, Rule};
 use super::leaf_mesh::LeafMesh;
@@ -93,16 +94,16 @@ fn chords(face: &FaceMesh<'_, '_>) -> Vec<Chord> {
     face.chart().loops.iter().flat_map(ring).filter_map(chord).collect()
 }
 
-/// The largest distance of the control points, and so of the curve, from the line through a chord; lengths counted in `size`
-/// per direction.
+/// The largest distance of the control points, and so of the curve, from the line through a chord; lengths
+/// counted in `size` per direction.
 fn farthest(curve: &BezierCurve<DVec2>, [a, b]: [DVec2; 2], size: DVec2) -> f64 {
     let d = (b - a) / size;
     let off = |p: &DVec2| ((*p - a) / size).perp_dot(d).abs() / d.length().max(f64::MIN_POSITIVE);
     curve.points.iter().map(off).fold(0.0, f64::max)
 }
 
-/// The curve over a chord in the plane of the chart: the file's own where it has one that ends where the chord does, else a cubic
-/// through four points of the edge, brought back onto the surface.
+/// The curve over a chord in the plane of the chart: the file's own where it has one that ends where the
+/// chord does, else a cubic through four points of the edge, brought back onto the surface.
 fn planar(face: &FaceMesh<'_, '_>, chord: &Chord) -> Vec<BezierCurve<DVec2>> {
     from_file(face, chord).unwrap_or_else(|| vec![through_samples(face, chord)])
 }

@@ -1,8 +1,9 @@
 //! Edges forced into a triangulation by flips.
 //!
-//! Source: Sloan 1993, *A fast algorithm for generating constrained Delaunay triangulations*: every edge that crosses the wanted
-//! one is flipped, as soon as its two triangles form a convex quadrilateral, until none is left. All decisions are
-//! exact; an edge that would cross a fixed one, or the boundary, is refused, and the triangulation stays valid.
+//! Source: Sloan 1993, *A fast algorithm for generating constrained Delaunay triangulations*: every edge that
+//! crosses the wanted one is flipped, as soon as its two triangles form a convex quadrilateral, until none is
+//! left. All decisions are exact; an edge that would cross a fixed one, or the boundary, is refused, and the
+//! triangulation stays valid.
 
 use chordal_tessellate::method::{NONE, Triangulation, orient};
 use rustc_hash::FxHashSet;
@@ -42,8 +43,8 @@ impl<'m> Constrained<'m> {
         Self { mesh, incident, fixed: FxHashSet::default() }
     }
 
-    /// Makes `a`–`b` an edge and fixes it; where vertices lie on the way, the pieces between them. False where a fixed edge or
-    /// the boundary is in the way.
+    /// Makes `a`–`b` an edge and fixes it; where vertices lie on the way, the pieces between them. False
+    /// where a fixed edge or the boundary is in the way.
     pub fn force(&mut self, a: u32, b: u32) -> bool {
         let mut from = a;
         // A straight line passes through every vertex at most once.
@@ -77,14 +78,16 @@ impl<'m> Constrained<'m> {
         Some(end)
     }
 
-    /// The triangles around a vertex, each with the vertex's corner: one way round from the one that is known, then the other.
+    /// The triangles around a vertex, each with the vertex's corner: one way round from the one that is
+    /// known, then the other.
     fn star(&self, v: u32) -> Star<'_> {
         let first = self.incident[v as usize];
         Star { mesh: &*self.mesh, vertex: v, first, at: first, turn: 1 }
     }
 
-    /// The triangle with the directed edge p → q, and the corner opposite to it. Walks around both ends at once: one of them may have
-    /// thousands of triangles, where the crossings of borders with a long chord moved to its end.
+    /// The triangle with the directed edge p → q, and the corner opposite to it. Walks around both ends at
+    /// once: one of them may have thousands of triangles, where the crossings of borders with a long chord
+    /// moved to its end.
     fn find_edge(&self, p: u32, q: u32) -> Option<(u32, usize)> {
         let (mut around_p, mut around_q) = (self.star(p), self.star(q));
         loop {

@@ -1,9 +1,10 @@
 //! Coving: triangles between a boundary and the border of a region inside it, each tessellated by itself.
 //!
-//! Source: the survey of the Blender wiki, "Tessellation Terminology", after Kumar and others 1997 and Piegl and Tiller 1998: boundaries
-//! are often sampled by other rules than the inside (an error bound of their own, or a neighbour that they are sewn to), so there must be a
-//! general way to join the two. Here it is a plane sweep over the polygon between them: the loops of the face on the outside, the loops
-//! around the region as holes. It sets no vertex.
+//! Source: the survey of the Blender wiki, "Tessellation Terminology", after Kumar and others 1997 and Piegl
+//! and Tiller 1998: boundaries are often sampled by other rules than the inside (an error bound of their own,
+//! or a neighbour that they are sewn to), so there must be a general way to join the two. Here it is a plane
+//! sweep over the polygon between them: the loops of the face on the outside, the loops around the region as
+//! holes. It sets no vertex.
 //!
 //! ```text
 //!   ●────●──────●───●        ● the boundary's own samples
@@ -11,8 +12,9 @@
 //!   │ o────o────o──o│        ╱ coving triangles
 //! ```
 //!
-//! As a strategy the region is that of a uniform grid's cells that keep clear of the loops. Where a triangle of the strip spans
-//! too much ([`super::size`]), no cell had room: the grid gets twice as many lines across, until one has.
+//! As a strategy the region is that of a uniform grid's cells that keep clear of the loops. Where a triangle
+//! of the strip spans too much ([`super::size`]), no cell had room: the grid gets twice as many lines across,
+//! until one has.
 
 use super::bezier::{fan, halves};
 use super::borders::Borders;
@@ -28,11 +30,12 @@ use chordal_tessellate::method::{Check, FaceFiller, FaceMesh, open_out, sweep};
 use rustc_hash::FxHashSet;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Cells nearer to a loop than this share of their size are left out: triangles between them and the loop would be slivers.
+/// Cells nearer to a loop than this share of their size are left out: triangles between them and the loop
+/// would be slivers.
 const CLEAR: f64 = 0.25;
 
-/// Triangles of the strip between loops (each a range of `points`, the face on their left) and the borders of a region (closed
-/// chains of indices into `points`, the region on their left).
+/// Triangles of the strip between loops (each a range of `points`, the face on their left) and the borders of
+/// a region (closed chains of indices into `points`, the region on their left).
 ///
 /// # Errors
 /// Where the loops, or the borders, cross each other or themselves.
@@ -162,7 +165,8 @@ impl Coving {
     }
 }
 
-/// The coarsest grid that leaves next to as little too wide as any: twice the cells for a tenth less would be a bad bargain.
+/// The coarsest grid that leaves next to as little too wide as any: twice the cells for a tenth less would be
+/// a bad bargain.
 fn best_grid(tried: &[(usize, [usize; 2])]) -> [usize; 2] {
     let least = tried.iter().map(|t| t.0).min().unwrap_or(0);
     let enough = least + tried.first().map_or(0, |t| t.0.saturating_sub(least) / 5);

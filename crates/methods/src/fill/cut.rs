@@ -1,8 +1,9 @@
 //! Cells cut with the loops of the face.
 //!
-//! Sources: Balázs, Guthe, Klein 2004, section 6; Kahlesz, Balázs, Klein 2001, section 7. There a vertex is set wherever the border
-//! of a cell crosses a trimming curve, which the neighbouring face knows nothing of. Here edges belong to all their
-//! faces, so the crossing moves to the nearer end of the chord that is crossed:
+//! Sources: Balázs, Guthe, Klein 2004, section 6; Kahlesz, Balázs, Klein 2001, section 7. There a vertex is
+//! set wherever the border of a cell crosses a trimming curve, which the neighbouring face knows nothing of.
+//! Here edges belong to all their faces, so the crossing moves to the nearer end of the chord that is
+//! crossed:
 //!
 //! ```text
 //!        o───────o                 o───────o         o  corners of cells inside the face
@@ -11,8 +12,9 @@
 //!        │       │                 └─┘               a sliver gives way to the chord's nearer end, too
 //! ```
 //!
-//! The borders are then forced into the triangulation of the loops ([`super::constrain`]): whatever is to the left of the loops
-//! is covered exactly once, however cells and loops lie. What is left between borders is constrained Delaunay.
+//! The borders are then forced into the triangulation of the loops ([`super::constrain`]): whatever is to the
+//! left of the loops is covered exactly once, however cells and loops lie. What is left between borders is
+//! constrained Delaunay.
 
 use super::borders::Borders;
 use super::constrain::Constrained;

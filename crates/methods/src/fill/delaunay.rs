@@ -1,11 +1,12 @@
 //! Fill points and a Delaunay triangulation of them with the loops.
 //!
-//! Source: the survey of the Blender wiki, "Delaunay Triangulation". Points are strewn over the face, those outside its loops are
-//! discarded, and the rest is triangulated with the loops as constraints; nothing but the largest smallest angle decides
-//! about the triangles. Uniform points form a grid in the plane of parameters (as many lines as the uniform grid
-//! would have); where that leaves triangles that are too large, for lack of lines or of room, more points
-//! restrict them by size ([`super::size`]). Adaptive ones go where a triangle of those before deviates too much, its longest side half way inside, as
-//! Sheng and Hirsch 1992 restrict triangles by deviation. The common proof has the last word.
+//! Source: the survey of the Blender wiki, "Delaunay Triangulation". Points are strewn over the face, those
+//! outside its loops are discarded, and the rest is triangulated with the loops as constraints; nothing but
+//! the largest smallest angle decides about the triangles. Uniform points form a grid in the plane of
+//! parameters (as many lines as the uniform grid would have); where that leaves triangles that are too large,
+//! for lack of lines or of room, more points restrict them by size ([`super::size`]). Adaptive ones go where
+//! a triangle of those before deviates too much, its longest side half way inside, as Sheng and Hirsch 1992
+//! restrict triangles by deviation. The common proof has the last word.
 //!
 //! Angles are measured in the plane of parameters, stretched in each direction as the surface is on average.
 
@@ -57,7 +58,8 @@ const TIGHTER: f64 = 0.6;
 /// So often the proof may ask for more; what limits of angle want is not found by sizes.
 const MOST_REFINED: usize = 3;
 
-/// Points by size, for each cell of the grid and each vertex of the loops: no face needs as many, so something else is wrong.
+/// Points by size, for each cell of the grid and each vertex of the loops: no face needs as many, so
+/// something else is wrong.
 const MOST_BY_SIZE: usize = 16;
 
 impl Delaunay {

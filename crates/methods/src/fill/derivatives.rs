@@ -1,14 +1,16 @@
-//! Bounds by second derivatives: what a triangle may cost at most, from the derivative patches of Bézier pieces.
+//! Bounds by second derivatives: what a triangle may cost at most, from the derivative patches of Bézier
+//! pieces.
 //!
-//! Source: Filip, Magedson, Markot 1986, *Surface algorithms using bounds on derivatives*, which the survey of the Blender
-//! wiki builds on ("the derivative is itself a Bézier patch"): over a right-angled triangle with legs a and b along u and v,
+//! Source: Filip, Magedson, Markot 1986, *Surface algorithms using bounds on derivatives*, which the survey
+//! of the Blender wiki builds on ("the derivative is itself a Bézier patch"): over a right-angled triangle
+//! with legs a and b along u and v,
 //!
 //! ```text
 //! ‖S − L‖ ≤ ⅛ (a² M_uu + 2ab M_uv + b² M_vv)        M the largest norms of the second derivatives
 //! ```
 //!
-//! Norms come from control points. Rational patches: with A = Σ w(P − c)B measured from a point c of the patch, S − c = A/w,
-//! R = max‖P − c‖ and least weight w₀,
+//! Norms come from control points. Rational patches: with A = Σ w(P − c)B measured from a point c of the
+//! patch, S − c = A/w, R = max‖P − c‖ and least weight w₀,
 //!
 //! ```text
 //! ‖S_u‖ ≤ (‖A_u‖ + R|w_u|)/w₀        ‖S_uv‖ ≤ (‖A_uv‖ + R|w_uv| + ‖S_u‖|w_v| + ‖S_v‖|w_u|)/w₀        S_uu alike

@@ -1,8 +1,9 @@
 //! Subdivisions that are laid down at once: the uniform grid, and a fixed number of cells per control cell.
 //!
-//! Source: the survey of the Blender wiki, "Uniform Grid Cut" and "Direct Tessellation", after Piegl and Richard 1995; how many lines
-//! are needed follows from [`super::derivatives`]. Both guarantee their error and pay for it: the most curved place
-//! decides for the whole face. Where the common proof still finds a triangle too coarse, all cells are halved.
+//! Source: the survey of the Blender wiki, "Uniform Grid Cut" and "Direct Tessellation", after Piegl and
+//! Richard 1995; how many lines are needed follows from [`super::derivatives`]. Both guarantee their error
+//! and pay for it: the most curved place decides for the whole face. Where the common proof still finds a
+//! triangle too coarse, all cells are halved.
 //!
 //! ```text
 //! uniform grid    n × m cells, the fewest with ⅛(M_uu/n² + 2M_uv/nm + M_vv/m²) ≤ ε over the unit square
@@ -186,7 +187,8 @@ mod tests {
         let cuts = UniformGrid::COARSEST.first_cuts(&s, 0.011);
         assert_eq!(cuts.len(), 4);
         assert!(cuts.iter().all(|c| c.axis == 0));
-        // Two control cells along u of width ½: the worst has error ⅛·2·¼ = 1/16, so ⌈√5.7⌉ = 3 parts; v gets as many.
+        // Two control cells along u of width ½: the worst has error ⅛·2·¼ = 1/16, so ⌈√5.7⌉ = 3 parts; v gets
+        // as many.
         let cuts = ControlCells { per_cell: 0 }.first_cuts(&s, 0.011);
         assert_eq!(cuts.iter().filter(|c| c.axis == 0).count(), 5);
     }

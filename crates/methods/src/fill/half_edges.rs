@@ -1,7 +1,8 @@
 //! Trimming by walking along half-edges.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 6. Borders of cells and trimming loops together are a planar graph. A trimming edge
-//! is *directed*, with the face on its left, and *marked*; a border of a cell is passed from either side.
+//! Source: Balázs, Guthe, Klein 2004, section 6. Borders of cells and trimming loops together are a planar
+//! graph. A trimming edge is *directed*, with the face on its left, and *marked*; a border of a cell is
+//! passed from either side.
 //!
 //! ```text
 //! while there is a directed edge:            handle: a directed edge is taken out;
@@ -10,10 +11,11 @@
 //!     → one polygon
 //! ```
 //!
-//! What lies to the right of the loops is never visited. A part of the graph that hangs together with nothing else, as a hole
-//! within one cell, is tied to the rest by two *bridges*, edges like borders of cells: one to its left, one to its right, each to the
-//! nearest vertex that it can see. A polygon around a hole so becomes two without one. The document ties the corners of the cell to
-//! the hole's nearest vertices, which may cross another hole; here bridges cross nothing. All decisions are exact.
+//! What lies to the right of the loops is never visited. A part of the graph that hangs together with nothing
+//! else, as a hole within one cell, is tied to the rest by two *bridges*, edges like borders of cells: one to
+//! its left, one to its right, each to the nearest vertex that it can see. A polygon around a hole so becomes
+//! two without one. The document ties the corners of the cell to the hole's nearest vertices, which may cross
+//! another hole; here bridges cross nothing. All decisions are exact.
 
 use chordal_nurbs::DVec2;
 use chordal_tessellate::method::orient;
@@ -53,8 +55,8 @@ struct Graph<'p> {
     around: Vec<Vec<u32>>,
 }
 
-/// Finds the polygons to the left of the `trimming` edges. Edges are pairs of indices of `points`, each pair once, and meet at
-/// common points only.
+/// Finds the polygons to the left of the `trimming` edges. Edges are pairs of indices of `points`, each pair
+/// once, and meet at common points only.
 pub fn walk(points: &[DVec2], trimming: &[[u32; 2]], borders: &[[u32; 2]]) -> Walked {
     let mut ends: Vec<[u32; 2]> = trimming.to_vec();
     ends.extend_from_slice(borders);
@@ -297,7 +299,8 @@ mod tests {
     }
 
     proptest! {
-        /// Any set of cells of a grid, bounded by trimming edges, some with a hole inside: each cell is found, nothing else.
+        /// Any set of cells of a grid, bounded by trimming edges, some with a hole inside: each cell is
+        /// found, nothing else.
         #[test]
         fn sets_of_cells_with_holes_are_covered(kept in prop::collection::vec(0u8..4, 36), turn in 0.0f64..6.3) {
             let mut points: Vec<DVec2> = (0..49).map(|k| DVec2::new(f64::from(k % 7), f64::from(k / 7))).collect();

@@ -1,7 +1,7 @@
 //! Cuts in one direction at a time: kd-tree and binary subdivision.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 5.2. The worst point is the control point (k, l) farthest from the bilinear surface
-//! through the node's corners, at the parameters (ξ_k, η_l).
+//! Source: Balázs, Guthe, Klein 2004, section 5.2. The worst point is the control point (k, l) farthest from
+//! the bilinear surface through the node's corners, at the parameters (ξ_k, η_l).
 //!
 //! ```text
 //! kd-tree   the line u = ξ_k or v = η_l that leaves the node's halves closer to S(ξ_k, η_l) gives the direction;
@@ -76,7 +76,8 @@ impl Rule for Binary {
     }
 }
 
-/// The direction whose line through the worst point, once it is a border of cells, passes nearer to the surface there.
+/// The direction whose line through the worst point, once it is a border of cells, passes nearer to the
+/// surface there.
 fn nearer_line(piece: &NurbsSurface, flatness: &Flatness) -> Option<usize> {
     let domain = piece.domain();
     let w = flatness.worst;
@@ -107,7 +108,8 @@ fn is_inside(piece: &NurbsSurface, axis: usize, t: f64) -> bool {
     t > domain.min[axis] + margin && t < domain.max[axis] - margin
 }
 
-/// Half way across the direction in which the corners lie farther apart: what a node needs that is only twisted.
+/// Half way across the direction in which the corners lie farther apart: what a node needs that is only
+/// twisted.
 pub fn across_longer_side(piece: &NurbsSurface) -> Split {
     let domain = piece.domain();
     let bilinear = Bilinear::new(piece);
@@ -162,8 +164,8 @@ mod tests {
         }
     }
 
-    /// DESIGN 4: the worst point is argmax ‖P_kl − B(k/m, l/n)‖; it is cut at k/m or at l/n, whichever line, once it is a border of
-    /// two nodes, has its bilinear approximation nearer to S(k/m, l/n).
+    /// DESIGN 4: the worst point is argmax ‖P_kl − B(k/m, l/n)‖; it is cut at k/m or at l/n, whichever line,
+    /// once it is a border of two nodes, has its bilinear approximation nearer to S(k/m, l/n).
     #[test]
     fn the_worst_point_and_the_direction_are_the_documents() {
         let mut runner = TestRunner::deterministic();

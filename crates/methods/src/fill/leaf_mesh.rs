@@ -1,7 +1,8 @@
 //! The borders of leaves as a mesh: unique vertices, edges that know their faces, edges that can be split.
 //!
-//! Source: Kahlesz, Balázs, Klein 2001, section 2. Vertices are kept in lexicographic order, so that no place can have two; an edge
-//! has the faces on its sides (more than two where a mesh is not manifold) and a direction, once a curve ran along it.
+//! Source: Kahlesz, Balázs, Klein 2001, section 2. Vertices are kept in lexicographic order, so that no place
+//! can have two; an edge has the faces on its sides (more than two where a mesh is not manifold) and a
+//! direction, once a curve ran along it.
 
 use super::borders::Borders;
 use chordal_nurbs::{DVec2, UvBox};

@@ -1,6 +1,7 @@
 //! A quadtree of the chords of one trimming loop: which boxes it meets.
 //!
-//! Source: Ma and Hewitt 2002, abstract and section 4.3: the inner loops are kept in quadtrees, with which patches are compared.
+//! Source: Ma and Hewitt 2002, abstract and section 4.3: the inner loops are kept in quadtrees, with which
+//! patches are compared.
 
 use super::region::chord_meets;
 use chordal_nurbs::{DVec2, UvBox};

@@ -1,6 +1,8 @@
-//! A node of a subdivision: a piece of the surface in NURBS form, and how far it strays from its four corners.
+//! A node of a subdivision: a piece of the surface in NURBS form, and how far it strays from its four
+//! corners.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 5.2, in the form of Kahlesz, Balázs, Klein 2001, Lemmas 1 and 2, with two changes.
+//! Source: Balázs, Guthe, Klein 2004, section 5.2, in the form of Kahlesz, Balázs, Klein 2001, Lemmas 1 and
+//! 2, with two changes.
 //!
 //! ```text
 //! E = max ‖P_ij − B(ξ_i, η_j)‖      B the bilinear surface through the corners, ξ_i and η_j the Greville abscissae
@@ -11,8 +13,9 @@
 //!
 //! The *estimated* error puts S(ξ_i, η_j) in place of P_ij: a sample, no bound.
 //!
-//! These bound shapes: the points of a rational piece slide along the bilinear surface. Where points are compared at equal parameters
-//! ([`off_bilinear`]), w (S − B) in Bernstein form of degree (m + 1, n + 1) takes the place of Lemma 2:
+//! These bound shapes: the points of a rational piece slide along the bilinear surface. Where points are
+//! compared at equal parameters ([`off_bilinear`]), w (S − B) in Bernstein form of degree (m + 1, n + 1)
+//! takes the place of Lemma 2:
 //!
 //! ```text
 //! Q_{i+a, j+b} += c_ia c_jb w_ij (P_ij − B_ab)      W_{i+a, j+b} += c_ia c_jb w_ij      a, b ∈ {0, 1}, B_ab the corners
@@ -50,7 +53,8 @@ pub struct Flatness {
     pub error: f64,
     /// Where E is reached, in the node's parameters.
     pub worst: DVec2,
-    /// The largest distance of a control point from the chord of its line along u, and along v, and where it lies.
+    /// The largest distance of a control point from the chord of its line along u, and along v, and where it
+    /// lies.
     pub bend: [(f64, f64); 2],
 }
 
@@ -94,7 +98,8 @@ impl Flatness {
         let (us, vs) = (greville(p, piece.knots_u(), m), greville(q, piece.knots_v(), n));
         let weights = piece.weights();
         let positive = weights.is_none_or(|w| w.iter().all(|&w| w > 0.0));
-        // Without positive weights the control points bound nothing; the common proof has the last word anyway.
+        // Without positive weights the control points bound nothing; the common proof has the last word
+        // anyway.
         let sampled = measure == Measure::Estimated || !positive;
         let net: Vec<DVec3> = if sampled {
             us.iter().flat_map(|&u| vs.iter().map(move |&v| piece.point(DVec2::new(u, v)))).collect()
@@ -119,8 +124,8 @@ impl Flatness {
     }
 }
 
-/// How far a Bézier piece lies from the bilinear surface through its corners, at equal parameters, at most; infinite where weights
-/// are not positive.
+/// How far a Bézier piece lies from the bilinear surface through its corners, at equal parameters, at most;
+/// infinite where weights are not positive.
 pub fn off_bilinear(piece: &NurbsSurface) -> f64 {
     let Some(weights) = piece.weights() else { return Flatness::new(piece, Measure::Conservative).bilinear };
     if !weights.iter().all(|&w| w > 0.0) {

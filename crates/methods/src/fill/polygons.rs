@@ -1,10 +1,11 @@
 //! The polygons between fixed edges, and how they become triangles.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 7. A polygon without a reflex corner is cut from its upper left corner in linear time;
-//! others by the plane sweep into monotone pieces (Garey and others 1978). Kahlesz, Balázs, Klein 2001, section 7, keeps
-//! the constrained Delaunay triangulation instead. Whether a polygon is convex costs one turn per corner, and is asked only where a
-//! trimming loop passes. Polygons are found by walking along half-edges ([`super::half_edges`]); where that does not account for
-//! every triangle, or would make a sliver, the constrained Delaunay triangles of the region stay.
+//! Source: Balázs, Guthe, Klein 2004, section 7. A polygon without a reflex corner is cut from its upper left
+//! corner in linear time; others by the plane sweep into monotone pieces (Garey and others 1978). Kahlesz,
+//! Balázs, Klein 2001, section 7, keeps the constrained Delaunay triangulation instead. Whether a polygon is
+//! convex costs one turn per corner, and is asked only where a trimming loop passes. Polygons are found by
+//! walking along half-edges ([`super::half_edges`]); where that does not account for every triangle, or would
+//! make a sliver, the constrained Delaunay triangles of the region stay.
 //!
 //! ```text
 //! o──1──o──3──o        from the upper left corner the front (l, r) moves down and right; the next corner is the one of the
@@ -78,8 +79,8 @@ struct Count {
     kept: usize,
 }
 
-/// The polygons that the walk along half-edges finds, by the region of triangles that they cover; none for regions where the
-/// boundary is no set of simple loops.
+/// The polygons that the walk along half-edges finds, by the region of triangles that they cover; none for
+/// regions where the boundary is no set of simple loops.
 fn walked(
     mesh: &Triangulation,
     fixed: &FxHashSet<(u32, u32)>,
@@ -136,7 +137,8 @@ fn on_boundary(mesh: &Triangulation) -> Vec<bool> {
     found
 }
 
-/// Only polygons that touch a trimming loop need be asked whether they are convex: others are cells with vertices in their sides.
+/// Only polygons that touch a trimming loop need be asked whether they are convex: others are cells with
+/// vertices in their sides.
 fn triangulated(
     points: &[DVec2],
     polygon: &Polygon,
@@ -224,12 +226,14 @@ fn loops_of(edges: &[(u32, u32)]) -> Option<Vec<Vec<u32>>> {
     Some(loops)
 }
 
-/// Heights below this share of the polygon's extent are rounding: samples along a line of constant parameter are in line
-/// only as far as parameters can be computed, and a triangle of three of them, flat here, stands up in space.
+/// Heights below this share of the polygon's extent are rounding: samples along a line of constant parameter
+/// are in line only as far as parameters can be computed, and a triangle of three of them, flat here, stands
+/// up in space.
 const ROUNDING: f64 = 1e-7;
 
-/// Triangles lower than this share of their longest side, in a polygon stretched to a square, are slivers: flat in the plane
-/// of parameters they may stand up in space. A polygon that would get one keeps its Delaunay triangles.
+/// Triangles lower than this share of their longest side, in a polygon stretched to a square, are slivers:
+/// flat in the plane of parameters they may stand up in space. A polygon that would get one keeps its
+/// Delaunay triangles.
 const SLIVER: f64 = 5e-3;
 
 /// Counter-clockwise, and no sliver.
@@ -353,7 +357,8 @@ mod tests {
     }
 
     proptest! {
-        /// A star with stars cut out: as many triangles as Euler says, all counter-clockwise, the same area as earcut's.
+        /// A star with stars cut out: as many triangles as Euler says, all counter-clockwise, the same area
+        /// as earcut's.
         #[test]
         fn walk_and_monotone_pieces_agree_with_earcut(
             outer in prop::collection::vec(4.0f64..6.0, 5..40),
@@ -390,8 +395,8 @@ mod tests {
             prop_assert!((ours - theirs).abs() < 1e-9 * ours, "{ours} {theirs}");
         }
 
-        /// Convex polygons, vertices in their sides included, from the upper left corner on: linear, complete, and convex is what
-        /// the test says.
+        /// Convex polygons, vertices in their sides included, from the upper left corner on: linear,
+        /// complete, and convex is what the test says.
         #[test]
         fn convex_polygons_are_cut_completely(
             angles in prop::collection::vec(0.0..std::f64::consts::TAU, 3..20), stretch in 0.01f64..100.0, dent: bool,

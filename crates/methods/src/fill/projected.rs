@@ -1,7 +1,8 @@
 //! Flatness of a Bézier patch by projecting its control net.
 //!
-//! Source: Ma and Hewitt 2002, section 4: a patch is flat enough when its control net is; how to tell is taken from their
-//! projection of points onto surfaces, where a net is replaced by the plane quadrilateral below it. In that form:
+//! Source: Ma and Hewitt 2002, section 4: a patch is flat enough when its control net is; how to tell is
+//! taken from their projection of points onto surfaces, where a net is replaced by the plane quadrilateral
+//! below it. In that form:
 //!
 //! ```text
 //! n    the normal across both diagonals of the corners; the corners lie h above and below the plane with it, alternately
@@ -10,13 +11,15 @@
 //! error ≤ d + h
 //! ```
 //!
-//! The distance from a convex set is a convex function, and the patch lies within the convex hull of its net (rational ones too,
-//! with positive weights), so no point of the patch is farther from Q than d; the two triangles over Q are within h of it. Unlike
-//! Lemma 2 this sees the shape only: a flat patch passes however unevenly its parameters run. It counts the twist of the corners
-//! twice; where Lemmas 1 and 2 give less, or Q is not convex, they decide.
+//! The distance from a convex set is a convex function, and the patch lies within the convex hull of its net
+//! (rational ones too, with positive weights), so no point of the patch is farther from Q than d; the two
+//! triangles over Q are within h of it. Unlike Lemma 2 this sees the shape only: a flat patch passes however
+//! unevenly its parameters run. It counts the twist of the corners twice; where Lemmas 1 and 2 give less, or
+//! Q is not convex, they decide.
 //!
-//! The document does not say in which directions a patch is halved. Here it is those in which lines of the net bend, both where they
-//! bend about alike: halving a cylinder along its axis would double its patches for nothing.
+//! The document does not say in which directions a patch is halved. Here it is those in which lines of the
+//! net bend, both where they bend about alike: halving a cylinder along its axis would double its patches for
+//! nothing.
 
 use super::cells::{Rule, Split};
 use super::grid::halves;
@@ -141,7 +144,8 @@ mod tests {
         assert!((projected_error(&sheet, Measure::Conservative) - 0.5f64.sqrt() / 2.0).abs() < 1e-15);
         // Half as much on the surface itself, which the estimate samples.
         assert!((projected_error(&sheet, Measure::Estimated) - 0.5f64.sqrt() / 4.0).abs() < 1e-15);
-        // z = uv: the corners lie ¼/√1½ above and below the plane z = (u + v)/2 − ¼, which counts twice; Lemma 1 has ¼.
+        // z = uv: the corners lie ¼/√1½ above and below the plane z = (u + v)/2 − ¼, which counts twice;
+        // Lemma 1 has ¼.
         let points = [(0., 0.), (0., 1.), (1., 0.), (1., 1.)].map(|(u, v)| DVec3::new(u, v, u * v)).to_vec();
         let twisted = patch([1, 1], points, None);
         let plane = Quadrilateral::under(&twisted).expect("convex");

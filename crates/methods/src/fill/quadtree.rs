@@ -1,9 +1,9 @@
 //! The quadtree: Bézier patches, halved in both directions.
 //!
-//! Source: Kahlesz, Balázs, Klein 2001, sections 4 and 6. The first leaves are the Bézier patches; one whose error by Lemmas 1 and 2
-//! ([`super::node`]) is over ε is cut into four. For an error κ along the boundary the document splits the budget into
-//! three parts: ε = κ/3 for the surface on either side of the curve, and the rest for the curve in the plane of
-//! parameters, over each leaf by what the leaf stretches lengths:
+//! Source: Kahlesz, Balázs, Klein 2001, sections 4 and 6. The first leaves are the Bézier patches; one whose
+//! error by Lemmas 1 and 2 ([`super::node`]) is over ε is cut into four. For an error κ along the boundary
+//! the document splits the budget into three parts: ε = κ/3 for the surface on either side of the curve, and
+//! the rest for the curve in the plane of parameters, over each leaf by what the leaf stretches lengths:
 //!
 //! ```text
 //! δ = (κ − 2ε)/‖bl‖      bl the bilinear map of the leaf onto its corners
@@ -25,7 +25,8 @@ pub enum Stretch {
     SingularValue,
 }
 
-/// The quadtree, with its share of the tolerance: ε in κ, or all of it where curves are not approximated in the plane.
+/// The quadtree, with its share of the tolerance: ε in κ, or all of it where curves are not approximated in
+/// the plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadtree {
     pub stretch: Stretch,
@@ -118,7 +119,8 @@ mod tests {
         let sheared = patch(&[(0., 0., 0.), (c, s, 0.), (1., 0., 0.), (1. + c, s, 0.)]);
         let exact = (1.0 + c).sqrt();
         assert!((norm(&sheared) - exact).abs() < 1e-15);
-        // The diagonal of the square is that bisector here, so the document's measure agrees; turned by 90° it does not.
+        // The diagonal of the square is that bisector here, so the document's measure agrees; turned by 90°
+        // it does not.
         assert!((norm_by_edges(&sheared) - exact).abs() < 1e-15);
         let other = patch(&[(0., 0., 0.), (-c, s, 0.), (1., 0., 0.), (1. - c, s, 0.)]);
         assert!((norm(&other) - exact).abs() < 1e-15);

@@ -1,9 +1,9 @@
 //! Recursive subdivision of Bézier patches with a bound from their derivative patches.
 //!
-//! Source: the survey of the Blender wiki, "Recursive Subdivision / Piecewise Bézier". The surface becomes a quilt of Bézier
-//! patches; one whose derivatives allow too large an error is halved across the direction in which they are larger,
-//! and so on. The survey speaks of the first derivative, which bounds how long a step is; how far a triangle strays is
-//! bounded by the second, a patch as well ([`super::derivatives`]).
+//! Source: the survey of the Blender wiki, "Recursive Subdivision / Piecewise Bézier". The surface becomes a
+//! quilt of Bézier patches; one whose derivatives allow too large an error is halved across the direction in
+//! which they are larger, and so on. The survey speaks of the first derivative, which bounds how long a step
+//! is; how far a triangle strays is bounded by the second, a patch as well ([`super::derivatives`]).
 
 use super::cells::{Rule, Split};
 use super::derivatives::SecondNorms;

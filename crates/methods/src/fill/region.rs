@@ -1,7 +1,7 @@
 //! The face in its chart as a region: what lies inside its loops, and which chords are near.
 //!
-//! Chords are sorted into a uniform grid of bins. Inside is decided by counting the chords that a ray to the right crosses,
-//! with exact predicates; a point on a chord counts as on either side.
+//! Chords are sorted into a uniform grid of bins. Inside is decided by counting the chords that a ray to the
+//! right crosses, with exact predicates; a point on a chord counts as on either side.
 
 use chordal_nurbs::{DVec2, UvBox};
 use chordal_tessellate::method::{Chart, orient};
@@ -110,7 +110,8 @@ impl Region {
         near.filter(|&(d, _)| d <= reach).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
     }
 
-    /// Where the segment from `p` along `axis` to the coordinate `to` crosses chords: (coordinate, chord), in order from `p`.
+    /// Where the segment from `p` along `axis` to the coordinate `to` crosses chords: (coordinate, chord), in
+    /// order from `p`.
     pub fn crossings(&self, p: DVec2, axis: usize, to: f64) -> Vec<(f64, u32)> {
         let mut q = p;
         q[axis] = to;

@@ -1,7 +1,8 @@
 //! The documents' error formulas as restored, held against what they claim.
 //!
-//! Balázs, Guthe, Klein 2004, section 5.2, and Kahlesz, Balázs, Klein 2001, Lemmas 1 and 2, lost constants in print, and what the
-//! former calls ε_approx is no bound at all. Here each constant is reached, or shown to be too small.
+//! Balázs, Guthe, Klein 2004, section 5.2, and Kahlesz, Balázs, Klein 2001, Lemmas 1 and 2, lost constants in
+//! print, and what the former calls ε_approx is no bound at all. Here each constant is reached, or shown to
+//! be too small.
 
 use super::node::{Flatness, Measure};
 use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
@@ -42,8 +43,8 @@ fn interpolating(values: &[f64]) -> Vec<f64> {
     (0..=n).map(|i| rows[i].1 / rows[i].0[i]).collect()
 }
 
-/// The surface over the unit square, heights zero at its corners, 1 or −1 at every other sample of ε_approx, that rises highest
-/// between them; and where.
+/// The surface over the unit square, heights zero at its corners, 1 or −1 at every other sample of ε_approx,
+/// that rises highest between them; and where.
 fn worst_for_samples(p: usize, q: usize) -> (NurbsSurface, DVec2) {
     let is_corner = |i: usize, j: usize| (i == 0 || i == p) && (j == 0 || j == q);
     let height = |at: DVec2| -> f64 {

@@ -1,7 +1,8 @@
 //! Which patches a face keeps, by scanlines.
 //!
-//! Source: Ma and Hewitt 2002, section 4.3. Lines of constant v lie evenly over the box of the outer loop, the denser the finer the
-//! tolerance. Each is cut by the loops in an even number of places, between which it runs inside and outside by turns:
+//! Source: Ma and Hewitt 2002, section 4.3. Lines of constant v lie evenly over the box of the outer loop,
+//! the denser the finer the tolerance. Each is cut by the loops in an even number of places, between which it
+//! runs inside and outside by turns:
 //!
 //! ```text
 //!            ╭────╮
@@ -12,8 +13,8 @@
 //!   ───────────x──────────        touched in a point: that point twice, so that the number stays even
 //! ```
 //!
-//! A patch that a loop meets is cut; of the others, one line through it tells whether it stays. Patches that lie between two lines
-//! get one of their own.
+//! A patch that a loop meets is cut; of the others, one line through it tells whether it stays. Patches that
+//! lie between two lines get one of their own.
 
 use super::loop_tree::LoopTree;
 use chordal_nurbs::{DVec2, UvBox};
@@ -41,8 +42,8 @@ pub struct Scanlines {
     pub tangent: usize,
 }
 
-/// So many lines that two neighbours are as far apart as the ends of a chord over an arc as wide as the face: as many as
-/// patches where the face bends half around.
+/// So many lines that two neighbours are as far apart as the ends of a chord over an arc as wide as the face:
+/// as many as patches where the face bends half around.
 pub fn lines_for(height_xyz: f64, tolerance: f64) -> usize {
     (height_xyz / tolerance).sqrt().ceil().clamp(LINES.0, LINES.1) as usize
 }
@@ -109,7 +110,8 @@ fn cross(tree: &LoopTree, level: f64, line: &mut Vec<f64>) -> usize {
     let mut tangent = 0;
     for k in tree.reaching(level) {
         let [p, q] = tree.chord(k);
-        // On the line counts as below it: a point touched from above is a crossing of either of its chords already.
+        // On the line counts as below it: a point touched from above is a crossing of either of its chords
+        // already.
         if (p.y > level) != (q.y > level) {
             line.push(p.x + (level - p.y) / (q.y - p.y) * (q.x - p.x));
         }
@@ -168,7 +170,8 @@ mod tests {
 
     #[test]
     fn tangent_points_are_repeated() {
-        // The diamond's lowest and highest corners, and the sides of the square, lie on lines: 0 < v < 4, lines at ½, 1½, …
+        // The diamond's lowest and highest corners, and the sides of the square, lie on lines: 0 < v < 4,
+        // lines at ½, 1½, …
         let diamond = |v: f64| [(2., v), (1., v + 1.), (2., v + 2.), (3., v + 1.)].map(DVec2::from).to_vec();
         let lines = Scanlines::new(&[square(0., 4.), diamond(0.5)], 4);
         assert_eq!(lines.lines[0], [0.0, 2.0, 2.0, 4.0], "touched from above");

@@ -1,17 +1,17 @@
 //! Triangles restricted by size: none spans more of the plane of parameters than the bound allows.
 //!
-//! Source: Piegl and Richard 1995, *Tessellating trimmed NURBS surfaces*, who fill faces so that no side of a triangle is longer than the
-//! second derivatives allow; Sheng and Hirsch 1992 alike. For a triangle of any shape within a box of sides a and b, linear
-//! interpolation of S is off by ½ Σ λᵢ (pᵢ − x)ᵀ H (pᵢ − x) at most, and each mean of squares by at most a quarter of the
-//! square of the box, so
+//! Source: Piegl and Richard 1995, *Tessellating trimmed NURBS surfaces*, who fill faces so that no side of a
+//! triangle is longer than the second derivatives allow; Sheng and Hirsch 1992 alike. For a triangle of any
+//! shape within a box of sides a and b, linear interpolation of S is off by ½ Σ λᵢ (pᵢ − x)ᵀ H (pᵢ − x) at
+//! most, and each mean of squares by at most a quarter of the square of the box, so
 //!
 //! ```text
 //! ‖S − L‖ ≤ ⅛ (a² M_uu + 2ab M_uv + b² M_vv)        as for a cell of that size, see [`super::derivatives`]
 //! ```
 //!
-//! M is estimated here along each side, from the normal parts of the second derivatives at its ends and its middle: one for the
-//! whole face would fill flat places as densely as the most curved one. Chords of the loops belong to the edges: a
-//! side is too long where it is longer than the triangle's chords, too.
+//! M is estimated here along each side, from the normal parts of the second derivatives at its ends and its
+//! middle: one for the whole face would fill flat places as densely as the most curved one. Chords of the
+//! loops belong to the edges: a side is too long where it is longer than the triangle's chords, too.
 
 use super::derivatives::SecondNorms;
 use super::region::Region;
@@ -33,7 +33,8 @@ pub struct Oversized {
     pub axis: usize,
 }
 
-/// The error that second derivatives about there expect of a side, and the direction that most of it comes from.
+/// The error that second derivatives about there expect of a side, and the direction that most of it comes
+/// from.
 fn side_error(surface: &FaceSurface<'_>, p: DVec2, q: DVec2) -> (f64, usize) {
     let norms = [p, p.midpoint(q), q].into_iter().fold(SecondNorms::default(), |norms, at| {
         let jet = surface.jet(at);
@@ -70,8 +71,8 @@ mod tests {
     use chordal_nurbs::{DVec3, UvBox};
     use proptest::prelude::*;
 
-    /// z = u²/2 over a triangle that is no half of its box: its lowest side is ⅛ off in its middle, all that the bound of its
-    /// box allows.
+    /// z = u²/2 over a triangle that is no half of its box: its lowest side is ⅛ off in its middle, all that
+    /// the bound of its box allows.
     #[test]
     fn a_triangle_of_any_shape_reaches_the_bound_of_its_box() {
         // Wide, so that heights are distances.

@@ -13,7 +13,8 @@ pub fn patch(degree: [usize; 2], points: Vec<DVec3>, weights: Option<Vec<f64>>) 
     NurbsSurface::new(degree, knots(degree[0]), knots(degree[1]), points, weights).expect("a legal patch")
 }
 
-/// Patches of degree 1 to 20 in either direction: wild ones, and sheets over the unit square with a little relief.
+/// Patches of degree 1 to 20 in either direction: wild ones, and sheets over the unit square with a little
+/// relief.
 pub fn patches() -> impl Strategy<Value = NurbsSurface> {
     let point = (-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0, -3.0f64..3.0);
     let net = prop::collection::vec(point, 21 * 21);
@@ -45,7 +46,8 @@ pub fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     })
 }
 
-/// The largest distance of samples of a patch from the nearer of its two halves, for the worse of the two diagonals.
+/// The largest distance of samples of a patch from the nearer of its two halves, for the worse of the two
+/// diagonals.
 pub fn distance_to_halves(s: &NurbsSurface, samples: usize) -> f64 {
     let (low, size) = (s.domain().min, s.domain().size());
     let at = |u: f64, v: f64| s.point(low + size * DVec2::new(u, v));

@@ -1,7 +1,7 @@
 //! Trimming curves followed over the leaves of a subdivision.
 //!
-//! Source: Kahlesz, Balázs, Klein 2001, section 6 and its Figure 1. A chain of Bézier curves is cut where it leaves a leaf, by a state
-//! machine with two states:
+//! Source: Kahlesz, Balázs, Klein 2001, section 6 and its Figure 1. A chain of Bézier curves is cut where it
+//! leaves a leaf, by a state machine with two states:
 //!
 //! ```text
 //!              1  the curve reaches the border of the leaf: a vertex there
@@ -229,12 +229,13 @@ mod tests {
     #[test]
     fn all_four_transitions() {
         let mut mesh = leaves();
-        // From inside a leaf over its right side, to the middle of the next; then to a vertex and along two edges and a half.
+        // From inside a leaf over its right side, to the middle of the next; then to a vertex and along two
+        // edges and a half.
         let chain = polyline(&[(0.1, 0.6), (0.35, 0.6), (0.25, 0.5), (0.9, 0.5), (0.9, 0.6)]);
         let tracked = track(&mut mesh, &chain);
         check(&mesh, &chain, &tracked).expect("followed");
-        // 1: at u = ¼, and at the vertex (¼, ½). 2: from u = ¼ on, and up at the end. 3: in the second leaf, and at the end.
-        // 4: from ¼ along ⅜, ½, ¾ to 0.9.
+        // 1: at u = ¼, and at the vertex (¼, ½). 2: from u = ¼ on, and up at the end. 3: in the second leaf,
+        // and at the end. 4: from ¼ along ⅜, ½, ¾ to 0.9.
         assert_eq!(tracked.transitions, [2, 2, 2, 4]);
         let directed: Vec<_> =
             mesh.edges.iter().filter_map(|(&(a, b), e)| e.forward.map(|f| (a, b, f))).collect();

@@ -1,25 +1,26 @@
-//! Corners: where the tangent of an edge turns at once. Sharp ones are vertices; soft ones, of which polylines through the points of
-//! smooth curves consist, only where a chord may not pass over them.
+//! Corners of an edge, where its tangent changes direction at one point. A sharp corner is a vertex. Soft
+//! corners occur in polylines through points of a smooth curve: they are vertices only where no chord may
+//! pass over them.
 
 use super::Probes;
 use crate::edge_use::EdgeUse;
 use crate::limits::Limits;
 use chordal_nurbs::{Curve, Range, Surface};
 
-/// A kink of the tangent of more than this (radians) is a corner.
+/// A change of direction of more than this, in radians, is a corner. Smaller ones are rounding of the file.
 const CORNER: f64 = 1e-3;
 
-/// A corner of up to this (radians) is soft: whoever drew it meant a bend.
+/// A corner of up to this angle, in radians, is soft: the file approximates a bend.
 const SOFT: f64 = 0.2;
 
 /// Chords over soft corners use this share of the tolerance along curved faces, whose facets need the rest.
 const BESIDE_CURVED: f64 = 0.5;
 
-/// A stretch of an edge between two corners.
+/// A piece of an edge between two corners.
 #[derive(Clone, Copy)]
 pub(super) struct Piece {
     pub range: Range,
-    /// It begins at a soft corner.
+    /// The piece begins at a soft corner.
     soft: bool,
 }
 
@@ -31,7 +32,7 @@ pub(super) fn smooth_pieces(curve: &Curve, range: Range, stops: &[f64]) -> Vec<P
     let mut cuts: Vec<(f64, bool)> =
         corners.filter(|&(_, kink)| kink > CORNER).map(|(t, kink)| (t, kink <= SOFT)).collect();
     for &stop in stops {
-        // A corner is mostly on a crease, too: there it is known best.
+        // Most corners lie on a crease as well. Its position is known better there.
         match cuts.iter_mut().find(|(t, _)| (t - stop).abs() <= step) {
             Some((_, soft)) => *soft = false,
             None => cuts.push((stop, false)),
@@ -50,8 +51,8 @@ pub(super) fn smooth_pieces(curve: &Curve, range: Range, stops: &[f64]) -> Vec<P
     pieces
 }
 
-/// Joins pieces as long as one chord may pass over the soft corners between them: within the tolerance, and no longer than the
-/// faces at the edge ask for.
+/// Joins pieces where one chord may pass over the soft corners between them: within the tolerance, and no
+/// longer than the faces at the edge need.
 pub(super) fn passed_over(
     pieces: Vec<Piece>,
     curve: &Curve,

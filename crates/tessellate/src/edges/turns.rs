@@ -1,14 +1,15 @@
-//! Chords along which a face does not turn further than the limit of angle.
+//! Chords are halved until no face turns further along them than the limit of angle.
 
 use super::split_where;
 use crate::edge_use::EdgeUse;
 use crate::limits::{Limits, TURN_LENGTH, turns_too_far};
 use chordal_nurbs::{Curve, Range};
 
-/// A chord is halved at most this often for the turn of a face along it.
+/// A chord is halved at most this often for the turn of a face: two to this power is finer than any surface
+/// needs.
 const MAX_HALVINGS: usize = 24;
 
-/// Halves chords between whose ends a face turns further than allowed: it may bend where no probe was.
+/// Halves chords between whose ends a face turns further than allowed. The face may bend between two probes.
 pub(super) fn turning_less(
     mut t: Vec<f64>,
     curve: &Curve,
@@ -16,7 +17,7 @@ pub(super) fn turning_less(
     uses: &[EdgeUse<'_, '_>],
     limits: &Limits,
 ) -> Vec<f64> {
-    // The ends may lie on creases: this much inside, normals belong to this piece.
+    // The ends may lie on creases. Normals this far inside belong to this piece.
     let inside = Range::new(range.start + 1e-7 * range.length(), range.end - 1e-7 * range.length());
     for one in uses.iter().filter(|u| !u.surface.is_elementary()) {
         if limits.angle >= std::f64::consts::PI {
@@ -51,11 +52,12 @@ pub(super) fn turning_less(
     t
 }
 
-/// Where a chord that knew nothing of its faces is asked how far they turn along it.
+/// Where the normals along a chord are compared that was chosen without regard to the faces, as shares of its
+/// length.
 const TURN_PROBES: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// Halves chords over which a face turns further than allowed, though it may turn back before their end: no facet beside such a
-/// chord could reach past the place in between.
+/// Halves chords over which a face turns further than allowed, even if it turns back before the end: no facet
+/// beside such a chord could reach past the place in between.
 pub(super) fn turning_less_between(
     mut t: Vec<f64>,
     curve: &Curve,

@@ -1,4 +1,4 @@
-//! A face's triangles are done: its result, how far its boundary is off its surface, and its share of the lower bound.
+//! The result of a face: its triangles, its gap, and its share of the lower bound.
 
 use super::{FaceMesh, Shape};
 use crate::face_result::{FaceResult, Proof};
@@ -8,6 +8,16 @@ use crate::metric::Sizing;
 use crate::quads::pairs;
 use crate::triangulate::NONE;
 use chordal_nurbs::{DVec2, Surface, UvBox};
+
+/// c of the lower bound where the Gaussian curvature is positive: 2/(3√3), from the largest triangle in a
+/// circle.
+const ELLIPTIC: f64 = 0.3849;
+
+/// c where it is negative: √5/10, from the largest triangle between two asymptotic directions.
+const HYPERBOLIC: f64 = 0.2236;
+
+/// Samples along the curved direction of a singly curved face, for the number of its strips.
+const STRIP_SAMPLES: usize = 16;
 
 impl FaceMesh<'_, '_> {
     /// The edges inside the face that another face may have too.
@@ -20,7 +30,7 @@ impl FaceMesh<'_, '_> {
         for (t, (corners, neighbors)) in self.mesh.triangles.iter().zip(&self.mesh.neighbors).enumerate() {
             for i in (0..3).filter(|&i| neighbors[i] != NONE && neighbors[i] as usize > t) {
                 let pair = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|v| keys[v as usize]);
-                // Across a triangle that is not written lies the boundary.
+                // A triangle that is not written counts as boundary.
                 let both = !collapsed(*corners) && !collapsed(self.mesh.triangles[neighbors[i] as usize]);
                 if is_shareable(pair) && both {
                     inner.push(sorted(pair));
@@ -81,7 +91,8 @@ impl FaceMesh<'_, '_> {
         }
     }
 
-    /// The largest distance of a boundary vertex, or of the edge half way along a chord, from the surface.
+    /// The gap: the largest distance from the surface of a boundary vertex, or of the edge half way along a
+    /// chord.
     fn gap(&self) -> f64 {
         let mut gap = 0.0f64;
         for (i, point) in self.chart.points.iter().enumerate() {
@@ -111,7 +122,8 @@ impl FaceMesh<'_, '_> {
         }
     }
 
-    /// c·∫√|K| dA / ε over the triangles (`docs/report.md`), or the strips of a singly curved face.
+    /// The lower bound by curvature: c·∫√|K| dA / ε over the triangles (`docs/report.md`), or the strips of a
+    /// singly curved face.
     fn curvature_bound(&self) -> f64 {
         let limits = Limits { angle: f64::INFINITY, length: f64::INFINITY, ..*self.limits };
         match self.shape {
@@ -119,15 +131,15 @@ impl FaceMesh<'_, '_> {
             Shape::Singly { axis } => {
                 let bounds = UvBox::from_points(self.mesh.points.iter().copied());
                 let mut d = DVec2::ZERO;
-                d[axis] = bounds.size()[axis] / 16.0;
+                d[axis] = bounds.size()[axis] / STRIP_SAMPLES as f64;
                 let start = {
                     let mut s = bounds.center();
                     s[axis] = bounds.min[axis];
                     s
                 };
-                let strips: f64 = (0..16)
+                let strips: f64 = (0..STRIP_SAMPLES)
                     .map(|k| {
-                        let jet = self.context.surface.jet(start + d * (f64::from(k) + 0.5));
+                        let jet = self.context.surface.jet(start + d * (k as f64 + 0.5));
                         Sizing::new(&jet, &limits).map_or(0.0, |s| s.metric.length(d))
                     })
                     .sum();
@@ -142,7 +154,7 @@ impl FaceMesh<'_, '_> {
                     let jet = self.context.surface.jet((a + b + c) / 3.0);
                     let area = 0.5 * (b - a).perp_dot(c - a).abs();
                     Sizing::new(&jet, &limits).map_or(0.0, |s| {
-                        let constant = if s.gauss > 0.0 { 0.3849 } else { 0.2236 };
+                        let constant = if s.gauss > 0.0 { ELLIPTIC } else { HYPERBOLIC };
                         constant * s.gauss.abs().sqrt() * s.area * area / self.limits.tolerance
                     })
                 })
@@ -151,7 +163,7 @@ impl FaceMesh<'_, '_> {
     }
 }
 
-/// Brings the halves of quadrilaterals that are still whole to the front, two by two; returns how many there are.
+/// Moves the halves of complete quadrilaterals to the front, in pairs; returns their number.
 fn pairs_first(quads: &[[u32; 4]], triangles: &mut Vec<[u32; 3]>) -> usize {
     let pairs = pairs(quads, triangles);
     let mut order: Vec<usize> = pairs.iter().flatten().copied().collect();

@@ -1,13 +1,13 @@
-//! Corners of triangles at a pole: all points of its line are one vertex, but each triangle sees the pole from its own
-//! side and needs its own parameters and normal there.
+//! Corners of triangles at a pole: all points of its line are one vertex, but each triangle sees the pole
+//! from its own side and needs its own parameters and normal there.
 
 use super::FaceMesh;
 use crate::keys::Key;
 use crate::triangulate::orient;
 use chordal_nurbs::{DVec2, DVec3};
 
-/// Corners at poles are taken this share of their triangle off the pole. Bounds of cones call places up to twice as far
-/// away the apex; on the pole itself, rounding decides which side the normal is taken from.
+/// Corners at poles are taken this share of their triangle off the pole. Bounds of cones call places up to
+/// twice as far away the apex; on the pole itself, rounding decides which side the normal is taken from.
 const BESIDE_POLE: f64 = 5e-10;
 
 impl FaceMesh<'_, '_> {
@@ -20,8 +20,8 @@ impl FaceMesh<'_, '_> {
         normals
     }
 
-    /// The corner of a triangle that lies on a pole, and the place just beside the pole between the triangle's other two
-    /// corners, where its normal is taken from.
+    /// The corner of a triangle that lies on a pole, and the place just beside the pole between the
+    /// triangle's other two corners, where its normal is taken from.
     fn pole_corner(&self, triangle: [u32; 3]) -> Option<(usize, DVec2)> {
         let i = (0..3).find(|&i| self.vertices.at_pole[triangle[i] as usize])?;
         let corner = triangle[i] as usize;
@@ -33,13 +33,15 @@ impl FaceMesh<'_, '_> {
         uv[pole.axis] += BESIDE_POLE * (a.midpoint(b)[pole.axis] - uv[pole.axis]);
         uv[along] = 0.5 * (a[along] + b[along]);
         let side = |uv: DVec2| orient(uv, a, b);
-        // A triangle so thin that it would turn over keeps the corner's own place along the pole, or altogether.
+        // A triangle so thin that it would turn over keeps the corner's own place along the pole, or
+        // altogether.
         let places = [uv, if along == 0 { DVec2::new(own.x, uv.y) } else { DVec2::new(uv.x, own.y) }];
         let uv = places.into_iter().find(|&uv| side(uv) * side(own) > 0.0).unwrap_or(own);
         Some((i, uv))
     }
 
-    /// Gives each triangle at a pole a corner of its own there. Returns how far these corners lie off the pole's vertex.
+    /// Gives each triangle at a pole a corner of its own there. Returns how far these corners lie off the
+    /// pole's vertex.
     pub(super) fn separate_pole_corners(&mut self, triangles: &mut [[u32; 3]], keys: &mut Vec<Key>) -> f64 {
         let mut gap = 0.0f64;
         if !self.touches_pole() {

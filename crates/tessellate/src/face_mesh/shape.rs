@@ -1,4 +1,4 @@
-//! How curved a face is: whether its boundary suffices, strips do, or points are needed inside.
+//! How curved a face is: whether its boundary suffices, strips suffice, or points are needed inside.
 
 use crate::chart::FaceContext;
 use crate::limits::Limits;
@@ -11,7 +11,7 @@ use chordal_nurbs::{DVec2, Surface, UvBox};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     Flat,
-    /// Curved in one parameter only, straight in the other: the boundary suffices.
+    /// Curved in one parameter only and straight in the other: the boundary suffices.
     Singly {
         axis: usize,
     },
@@ -33,12 +33,18 @@ pub(crate) fn shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBo
     }
 }
 
+/// Samples of a free surface in each direction, to find out whether it is curved. Bends between them are
+/// missed: then the proof inserts points.
+const SAMPLES: usize = 6;
+
+/// A direction that needs fewer chords than this across the whole face is straight.
+const STRAIGHT: f64 = 0.05;
+
 /// A free surface is singly curved where its metric across one parameter stays far below one chord
 /// everywhere.
 fn sampled_shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) -> Shape {
     let extent = chords_across(context, limits, uv_box);
-    let small = 0.05;
-    match (extent[0] < small, extent[1] < small) {
+    match (extent[0] < STRAIGHT, extent[1] < STRAIGHT) {
         (true, true) => Shape::Flat,
         (false, true) => Shape::Singly { axis: 0 },
         (true, false) => Shape::Singly { axis: 1 },
@@ -48,18 +54,17 @@ fn sampled_shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) 
 
 /// About how many chords a face takes along u and along v.
 fn chords_across(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) -> [f64; 2] {
-    const N: usize = 6;
     let mut extent = [0.0f64; 2];
-    for i in 0..N {
+    for i in 0..SAMPLES {
         let mut sum = [0.0; 2];
-        for j in 0..N {
+        for j in 0..SAMPLES {
             for axis in 0..2 {
                 let (a, b) = if axis == 0 { (j, i) } else { (i, j) };
-                let at = DVec2::new((a as f64 + 0.5) / N as f64, (b as f64 + 0.5) / N as f64);
+                let at = DVec2::new((a as f64 + 0.5) / SAMPLES as f64, (b as f64 + 0.5) / SAMPLES as f64);
                 let jet = context.surface.jet(uv_box.min + uv_box.size() * at);
                 let Some(s) = Sizing::new(&jet, limits) else { continue };
                 let mut d = DVec2::ZERO;
-                d[axis] = uv_box.size()[axis] / N as f64;
+                d[axis] = uv_box.size()[axis] / SAMPLES as f64;
                 sum[axis] += s.metric.length(d);
             }
         }
@@ -70,7 +75,8 @@ fn chords_across(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) 
     extent
 }
 
-/// A face that takes so many times as many chords along v as along u is swept along v.
+/// A face that takes this many times as many chords along v as along u is swept along v. A smaller factor
+/// would change the triangles of faces that do not need it.
 const LONG: f64 = 32.0;
 
 /// The parameter along which the boundary is swept into triangles: that in which the face is curved, or much

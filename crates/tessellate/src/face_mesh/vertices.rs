@@ -1,19 +1,21 @@
-//! The geometry of the vertices of a face: where they are, which way they face, how triangles at them are shaped.
+//! The geometry of the vertices of a face: where they are, which way they face, how triangles at them are
+//! shaped.
 
 use super::FaceMesh;
 use crate::metric::{Metric, Sizing};
 use chordal_nurbs::{DVec2, DVec3, SurfaceJet, UvBox};
 
-/// How much the sideways bend of parameter lines counts against their bend along the normal when triangles are shaped.
-/// Without it, long edges cut across a surface beside its parameter lines; at its full weight, triangles get short.
+/// How much the sideways bend of parameter lines counts against their bend along the normal when triangles
+/// are shaped. Without it, long edges cut across a surface beside its parameter lines; at its full weight,
+/// triangles get short.
 const SIDEWAYS: f64 = 0.3;
 
-/// Across the whole face, the metric counts at least this many chords. It breaks ties where the surface is flat and is
-/// too little to matter where it is curved.
+/// Across the whole face, the metric counts at least this many chords. It breaks ties where the surface is
+/// flat and is too little to matter where it is curved.
 const LEAST_CHORDS: f64 = 0.05;
 
-/// At a pole, derivatives are rounding: triangles there are shaped as they are this share of the way to the middle of
-/// the face.
+/// At a pole, derivatives are rounding: triangles there are shaped as they are this share of the way to the
+/// middle of the face.
 const BESIDE_POLE: f64 = 0.05;
 
 /// One entry per vertex, in step with the points of the triangulation.
@@ -54,7 +56,8 @@ impl Vertices {
 impl FaceMesh<'_, '_> {
     /// Measures the points of the loops.
     pub(super) fn measure_loops(&mut self) {
-        // The radius about the mean of the points, not a box, which would depend on how the part lies in space.
+        // The radius about the mean of the points, not a box, which would depend on how the part lies in
+        // space.
         let points = || self.chart.points.iter().map(|point| self.position(point.key));
         let middle = points().sum::<DVec3>() / self.chart.points.len().max(1) as f64;
         let radius = points().fold(f64::MIN_POSITIVE, |m, p| m.max(p.distance(middle)));

@@ -1,31 +1,34 @@
-//! Whether it is a chord that is wrong with a facet, or what lies inside it.
+//! Whether a facet is over the tolerance because of a chord of its boundary, or because of what lies inside.
 //!
-//! A facet over a long chord of the boundary is too far off until the chord is halved, whatever is done inside; one beside a fine
-//! chord needs points inside. Bounds tell the two apart, and where they are far beyond the tolerance they are looked at more closely.
+//! A facet over a long chord of the boundary is too far off until the chord is halved, whatever is done
+//! inside. A facet beside a fine chord needs points inside. Bounds of the chord by itself tell the two apart.
+//! Where such a bound is far beyond the tolerance, the chord is examined in parts.
 
 use super::Prover;
 use crate::face_mesh::FaceMesh;
 use chordal_nurbs::{Facet, chord_bound};
 
-/// A chord this many tolerances off, bounded by itself, is clearly not what is wrong with its facet.
+/// A chord whose own bound is below this share of the tolerance is not to blame for its facet.
 const FINE_CHORD: f64 = 0.5;
 
-/// A chord with a bound of more tolerances than this would be halved many times before it is proven, on surfaces that are wild beside it,
-/// not over it: it is looked at in so many parts. Within this share of the tolerance then, it is not what is wrong.
+/// A chord whose bound is more tolerances than this would be halved many times before it is proven, if the
+/// surface is wild beside the chord and not over it. Such a chord is examined in [`WILD_PARTS`] parts; if all
+/// of them are within [`WILD_FINE`] tolerances, the chord is not to blame.
 const WILD_CHORD: f64 = 64.0;
 const WILD_PARTS: usize = 8;
 const WILD_FINE: f64 = 0.1;
 
-/// So often points inside are tried first in one attempt at a face. Where the surface is wild over the chord as well, no facet beside it
-/// can be proven, however small, until it is halved.
+/// How often points inside are tried before such a chord is made finer, in one attempt at a face. Where the
+/// surface is wild over the chord as well, no facet beside it can be proven until the chord is halved;
+/// without this limit, points would be inserted without end.
 pub(super) const POINTS_FIRST: u32 = 32;
 
-/// A chord that bends by less than this share of a facet's height is straight to it.
+/// A chord that bends by less than this share of the height of a facet counts as straight.
 pub(super) const CHORD_BENDS: f64 = 0.25;
 
 impl Prover<'_> {
-    /// True where an edge is so far from the surface by itself that a point inside the facet would not help: else what is wrong, or
-    /// not known, lies inside.
+    /// True where a chord is so far from the surface by itself that a point inside the facet would not help.
+    /// False where the fault lies inside, or is unknown.
     pub(super) fn is_coarse_chord(&mut self, facet: &Facet, i: usize, tolerance: f64) -> bool {
         if self.sampled {
             return true;
@@ -44,8 +47,8 @@ impl Prover<'_> {
     }
 }
 
-/// A bent boundary edge whose image on the surface passes the corner opposite to it nearer than this: what is wrong with the facet
-/// is the chord's, and no point inside helps.
+/// A bent boundary edge whose image on the surface passes the opposite corner nearer than `distance`: the
+/// chord is to blame, and no point inside helps.
 pub(super) fn close_to_boundary(
     face: &FaceMesh<'_, '_>,
     facet: &Facet,
@@ -60,7 +63,7 @@ pub(super) fn close_to_boundary(
     })
 }
 
-/// How far the surface leaves the middle of the edge opposite corner `i`.
+/// The distance between the surface and the middle of the edge opposite corner `i`.
 pub(super) fn bend(face: &FaceMesh<'_, '_>, facet: &Facet, i: usize) -> f64 {
     let [a, b] = [1, 2].map(|k| (i + k) % 3);
     let middle = face.surface().point(facet.uv[a].midpoint(facet.uv[b]));

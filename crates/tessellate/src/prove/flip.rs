@@ -1,11 +1,11 @@
-//! Flips of inner edges that leave both triangles within the limits.
+//! Flips of inner edges after which both triangles are within the limits.
 
 use super::Prover;
 use crate::face_mesh::FaceMesh;
 use crate::triangulate::NONE;
 use chordal_nurbs::{DVec3, Facet};
 
-/// Triangles lower than this share of the size of their coordinates have no area.
+/// Triangles lower than this share of their coordinates have no area: their height is rounding.
 const NO_HEIGHT: f64 = 1e-12;
 
 impl Prover<'_> {
@@ -14,8 +14,8 @@ impl Prover<'_> {
         (0..3).any(|i| self.flip(face, t, i))
     }
 
-    /// Flips the longest edges of triangles that are no slivers in the plane of parameters but whose corners lie on one line in
-    /// space; what comes of it is yet to be judged.
+    /// Flips the longest edge of every triangle whose corners lie on one line in space, although the triangle
+    /// has an area in the chart. The new triangles are judged afterwards.
     pub(super) fn flip_slivers(&self, face: &mut FaceMesh<'_, '_>) {
         for t in 0..face.mesh().triangles.len() as u32 {
             let corners = face.mesh().triangles[t as usize];
@@ -49,7 +49,7 @@ impl Prover<'_> {
         helps
     }
 
-    /// True where a triangle that is not there yet, by its corners and the sagittas of its sides, would be within the limits.
+    /// True where a triangle, given by its corners and the sagittas of its sides, would be within the limits.
     fn keeps(&mut self, face: &FaceMesh<'_, '_>, (corners, sag): ([u32; 3], [Option<f64>; 3])) -> bool {
         let facet = Facet {
             uv: corners.map(|v| face.mesh().points[v as usize]),
@@ -62,7 +62,7 @@ impl Prover<'_> {
     }
 }
 
-/// What an edge and its two triangles would become.
+/// The two triangles that a flip would make.
 struct Flip {
     edge: [u32; 2],
     /// Corners, and the sagittas of the sides opposite to them.
@@ -70,7 +70,8 @@ struct Flip {
 }
 
 impl Flip {
-    /// The edge opposite corner `i` of triangle `t` flipped; none where it is a boundary, or the two no convex quadrilateral.
+    /// The flip of the edge opposite corner `i` of triangle `t`; `None` on the boundary, or where the two
+    /// triangles are no convex quadrilateral.
     fn new(face: &FaceMesh<'_, '_>, t: u32, i: usize) -> Option<Self> {
         let other = face.mesh().neighbors[t as usize][i];
         if other == NONE {
@@ -84,14 +85,15 @@ impl Flip {
             return None;
         }
         let sags = [t, other].map(|t| std::array::from_fn::<_, 3, _>(|i| Prover::sag(face, t, i)));
-        // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's side).
+        // (apex, a, apex2): opposite apex lies a–apex2 (the other's side), opposite apex2 lies apex–a (t's
+        // side).
         let first = ([apex, a, apex2], [sags[1][(j + 1) % 3], None, sags[0][(i + 2) % 3]]);
         let second = ([apex, apex2, b], [sags[1][(j + 2) % 3], sags[0][(i + 1) % 3], None]);
         Some(Self { edge: [apex, apex2], triangles: [first, second] })
     }
 }
 
-/// False for three corners on one line, as far as rounding tells.
+/// False for three corners on one line, up to rounding.
 fn has_area(face: &FaceMesh<'_, '_>, corners: [u32; 3]) -> bool {
     let [a, b, c] = corners.map(|v| face.position(face.key(v)));
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));

@@ -6,7 +6,8 @@
 //! 2. An edge inside the face that another face has too.
 //! 3. Its distance from the surface: a chord of its boundary is to blame, or what lies inside.
 //! 4. It faces away from the surface, doubled back over itself.
-//! 5. An edge turns too far, or is too long; edges on the boundary first, since the face runs again with finer ones.
+//! 5. An edge turns too far, or is too long; edges on the boundary first, since the face runs again with
+//!    finer ones.
 
 use super::Prover;
 use super::chords::{CHORD_BENDS, bend, close_to_boundary};
@@ -66,9 +67,10 @@ impl Prover<'_> {
         }
     }
 
-    /// How far off a facet may be: beside an edge as far as that, where it may be farther.
+    /// The allowed distance of a facet: the tolerance of edges for facets that touch one, if that is larger.
     ///
-    /// Not over its chords only: a facet that reaches from one end of a long chord to its middle is long itself.
+    /// This holds for all facets at an edge, not only for those over its chords: a facet from one end of a
+    /// long chord to its middle is long itself.
     pub(super) fn allowed(&self, face: &FaceMesh<'_, '_>, corners: [u32; 3]) -> f64 {
         let on_edge = |v: u32| !matches!(face.key(v), Key::Private(_));
         let boundary = self.limits.boundary;
@@ -85,7 +87,7 @@ impl Prover<'_> {
         a == b || b == c || c == a
     }
 
-    /// An inner edge that another face has too.
+    /// The corner opposite an inner edge that another face has too.
     fn doubled_side(face: &FaceMesh<'_, '_>, t: u32) -> Option<usize> {
         if face.context().doubled.is_empty() {
             return None;
@@ -135,8 +137,8 @@ impl Prover<'_> {
         (bound.error, self.long_or_turning(face, corners, boundary, tolerance))
     }
 
-    /// A facet that faces away from the surface where it meets the boundary: it may reach beyond the face. Folds inside
-    /// the face only cover it more than once.
+    /// A facet that faces away from the surface where it meets the boundary: it may reach beyond the face.
+    /// Folds inside the face only cover it more than once.
     fn fold(
         &self,
         face: &FaceMesh<'_, '_>,
@@ -153,7 +155,8 @@ impl Prover<'_> {
             return None;
         }
         let height = self.folded_height(facet.xyz, corners.map(|v| face.normal(v)))?;
-        // A chord that leaves the face by about as much as the facet is high must be finer; else an inner edge leaves it.
+        // A chord that leaves the face by about as much as the facet is high must be finer. Otherwise an
+        // inner edge leaves the face.
         let leaves = |i: usize| facet.sag[i].or_else(|| boundary[i].then(|| bend(face, facet, i)));
         let coarse = (0..3).find(|&i| leaves(i).is_some_and(|bend| bend > CHORD_BENDS * height));
         Some(coarse.map_or_else(|| Fault::Fold(longest_inner(face, t, facet)), Fault::Edge))
@@ -180,7 +183,8 @@ impl Prover<'_> {
         Some(if boundary[wrong] { Fault::Edge(wrong) } else { Fault::Inside(Some(wrong)) })
     }
 
-    /// The height of a facet that faces away from the surface at its corners: it lies outside the face, doubled back.
+    /// The height of a facet that faces away from the surface at its corners: it lies outside the face,
+    /// doubled back.
     pub(super) fn folded_height(&self, xyz: [DVec3; 3], normals: [DVec3; 3]) -> Option<f64> {
         let [a, b, c] = xyz;
         let cross = (b - a).cross(c - a);

@@ -10,8 +10,8 @@ use chordal_nurbs::DVec2;
 /// A flip is tried for facets whose error is at most this many tolerances; facets further off need points.
 const FLIP_HELPS: f64 = 3.0;
 
-/// A crease that cuts off less than this share of a facet's width passes its corner: a point on the crease would all but
-/// fall on that corner.
+/// A crease that cuts off less than this share of a facet's width passes its corner: a point on the crease
+/// would all but fall on that corner.
 const CREASE_BESIDE: f64 = 0.01;
 
 /// Lengths that differ by less than this share are equal, so that rounding decides nothing.
@@ -82,7 +82,7 @@ impl Prover<'_> {
         None
     }
 
-    /// A boundary chord of a triangle that nothing else can mend.
+    /// A chord of a triangle that cannot be mended otherwise.
     pub(super) fn coarse_boundary(&self, face: &FaceMesh<'_, '_>, t: u32) -> Option<(u32, u32)> {
         (0..3).find_map(|i| match self.boundary_segment(face, t, i) {
             Some(Segment::Edge { edge, chord }) if face.mesh().neighbors[t as usize][i] == NONE => {
@@ -93,7 +93,8 @@ impl Prover<'_> {
     }
 }
 
-/// The longest; of those that only rounding tells apart the first, so that the same part elsewhere gets the same mesh.
+/// The longest; the first one of those that only rounding tells apart, so that a part gets the same mesh at
+/// any place.
 pub(super) fn clearly_longest(
     of: impl Iterator<Item = usize>,
     length: impl Fn(usize) -> f64,

@@ -1,8 +1,10 @@
-//! Last resort for loops that truly cross: cut where they cross, then ear clipping that always finishes.
+//! Triangulation of loops that cross in the model: the polygon is cut at its crossings, then ears are
+//! clipped. It always finishes.
 //!
-//! The result is complete (every boundary segment once, every inner edge twice) and so keeps the mesh closed. What a loop
-//! encloses clockwise is covered by triangles that are turned over, as the boundary says. Holes are joined to the outer loop
-//! by their shortest bridge. Where two segments p–p' and q–q' of the one polygon cross, it falls apart:
+//! The result is complete (every boundary segment once, every inner edge twice) and so keeps the mesh closed.
+//! What a loop encloses clockwise is covered by triangles that are turned over, as the boundary says. Holes
+//! are joined to the outer loop by their shortest bridge. Where two segments p–p' and q–q' of the one polygon
+//! cross, it falls apart:
 //!
 //! ```text
 //!   … p        q' …        … p ──── q' …              p ╲ ╱ q'
@@ -23,7 +25,8 @@ const MAX_POINTS: usize = 4000;
 /// Crossings that are cut; loops that cross more often are beyond sense.
 const MAX_CUTS: usize = 200;
 
-/// Triangulates loops given as in [`super::sweep`], the first being the outer one; `None` if they are too large.
+/// Triangulates loops given as in [`super::sweep`], the first being the outer one; `None` if they are too
+/// large.
 pub(crate) fn clip_ears(points: &[DVec2], loops: &[(u32, u32)]) -> Option<Vec<[u32; 3]>> {
     if points.len() > MAX_POINTS || loops.is_empty() {
         return None;
@@ -168,7 +171,8 @@ mod tests {
         assert_eq!(open, [(0, 1), (0, 4), (1, 2), (2, 3), (3, 4)]);
     }
 
-    /// A square whose boundary runs on a little beyond its last corner, so that it ends in a small loop the other way.
+    /// A square whose boundary runs on a little beyond its last corner, so that it ends in a small loop the
+    /// other way.
     #[test]
     fn a_small_loop_beyond_a_crossing_stays_small() {
         let p = [

@@ -1,8 +1,8 @@
 //! A triangulation that points can be inserted into and whose edges can be flipped.
 //!
-//! Flips follow the Delaunay criterion in a metric that varies from vertex to vertex (the angles opposite an edge,
-//! measured in the mean metric of its four vertices, must not sum to more than π). In a varying metric that does not
-//! terminate by theorem, so the number of flips per call is bounded.
+//! Flips follow the Delaunay criterion in a metric that varies from vertex to vertex: the angles opposite an
+//! edge, measured in the mean metric of its four vertices, must not sum to more than π. In a varying metric
+//! no theorem guarantees an end, so the number of flips per call is bounded.
 
 use super::orient;
 use crate::metric::Metric;
@@ -28,7 +28,7 @@ pub struct Triangulation {
     pub points: Vec<DVec2>,
     pub triangles: Vec<[u32; 3]>,
     pub neighbors: Vec<[u32; 3]>,
-    /// Triangles changed since the caller last took this list; may name one several times.
+    /// Triangles that changed since the list was last cleared; one may occur several times.
     pub changed: Vec<u32>,
     stack: Vec<(u32, u32)>,
 }
@@ -116,8 +116,8 @@ impl Triangulation {
         on.map_or(Location::Inside(t), |i| Location::OnEdge(t, i))
     }
 
-    /// Inserts `p` and restores the Delaunay criterion around it; `metrics` must already hold one more entry than
-    /// there are points. Returns the new vertex, or `None` on a boundary edge, on a vertex or outside.
+    /// Inserts `p` and restores the Delaunay criterion around it; `metrics` must already hold one more entry
+    /// than there are points. Returns the new vertex, or `None` on a boundary edge, on a vertex or outside.
     pub fn insert(&mut self, p: DVec2, at: Location, metrics: &[Metric]) -> Option<u32> {
         let vertex = self.points.len() as u32;
         match at {
@@ -135,7 +135,8 @@ impl Triangulation {
         Some(vertex)
     }
 
-    /// Where to insert a point that is meant to lie on the inner edge of `t` opposite corner `i`, however it was rounded.
+    /// Where to insert a point on the inner edge of `t` opposite corner `i`, even if rounding moved it off
+    /// the edge.
     pub fn locate_on(&self, t: u32, i: usize, p: DVec2) -> Location {
         let other = self.neighbors[t as usize][i];
         let splits = |(apex, a, b): (u32, u32, u32)| {
@@ -199,7 +200,8 @@ impl Triangulation {
         let (n_b, n_a) = (self.neighbors[t as usize][after(i)], self.neighbors[t as usize][before(i)]);
         let (m_a, m_b) =
             (self.neighbors[other as usize][after(j)], self.neighbors[other as usize][before(j)]);
-        // Left of a→b: (apex, a, v) stays t, (apex, v, b) is t1; right: (apex2, b, v) is t2, (apex2, v, a) stays other.
+        // Left of a→b: (apex, a, v) stays t, (apex, v, b) is t1; right: (apex2, b, v) is t2, (apex2, v, a)
+        // stays other.
         let t1 = self.triangles.len() as u32;
         let t2 = t1 + 1;
         self.set(t, [apex, a, v], [other, t1, n_a]);
@@ -237,7 +239,7 @@ impl Triangulation {
         self.flip(metrics, allowed);
     }
 
-    /// Works off the stack of (triangle, corner opposite the edge in question).
+    /// Processes the stack of (triangle, corner opposite the edge in question).
     fn flip(&mut self, metrics: &[Metric], allowed: &dyn Fn(u32, u32, u32, u32) -> bool) {
         let mut left = 64 + 16 * self.triangles.len();
         while let Some((t, apex)) = self.stack.pop() {
@@ -278,8 +280,8 @@ impl Triangulation {
         area_c * dot_d + area_d * dot_c < -1e-9 * (area_c * dot_d.abs() + area_d * dot_c.abs())
     }
 
-    /// Replaces the edge opposite corner `i` of `t` by the other diagonal; `t` keeps (apex, a, apex2), its neighbour
-    /// becomes (apex, apex2, b).
+    /// Replaces the edge opposite corner `i` of `t` by the other diagonal; `t` keeps (apex, a, apex2), its
+    /// neighbour becomes (apex, apex2, b).
     pub fn flip_edge(&mut self, t: u32, i: usize) {
         let other = self.neighbors[t as usize][i];
         let j = self.corner_facing(other, t);

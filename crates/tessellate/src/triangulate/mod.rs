@@ -1,4 +1,5 @@
-//! Triangulation in the plane of parameters: a sweep for the boundary, then insertion and flips in the metric.
+//! Triangulation in the plane of parameters: a sweep for the boundary, then insertion and flips in the
+//! metric.
 
 mod ears;
 mod mesh;

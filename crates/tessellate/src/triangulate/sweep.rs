@@ -1,7 +1,8 @@
 //! Triangulation of polygons with holes by one sweep, without any new vertex.
 //!
-//! Source: the decomposition of a polygon into *monotone mountains* along the diagonals of its trapezoids (Fournier
-//! and Montuno 1984; Seidel 1991, section 4), here done while a Shamos–Hoey sweep runs from left to right.
+//! Source: the decomposition of a polygon into *monotone mountains* along the diagonals of its trapezoids
+//! (Fournier and Montuno 1984; Seidel 1991, section 4), here done while a Shamos–Hoey sweep runs from left to
+//! right.
 //!
 //! ```text
 //!   e_top  ----------o            Between two neighbouring active edges lies a trapezoid. It began at a vertex l and
@@ -10,12 +11,12 @@
 //!                                 over that edge, which a stack turns into triangles as the vertices arrive.
 //! ```
 //!
-//! Each polygon edge has the interior on exactly one side, so each edge owns exactly one mountain, and every triangle
-//! of it lies within the x-range of that edge. **That is why singly curved faces need no interior vertex:** with x the
-//! curved direction, no triangle turns further than a boundary chord does.
+//! Each polygon edge has the interior on exactly one side, so each edge owns exactly one mountain, and every
+//! triangle of it lies within the x-range of that edge. **That is why singly curved faces need no interior
+//! vertex:** with x the curved direction, no triangle turns further than a boundary chord does.
 //!
-//! Ties in x are broken by y, then by index: an infinitesimal shear, so vertical edges need no case of their own.
-//! Not guaranteed: loops that cross are noticed where they spoil a mountain, not everywhere.
+//! Ties in x are broken by y, then by index: an infinitesimal shear, so vertical edges need no case of their
+//! own. Not guaranteed: loops that cross are noticed where they spoil a mountain, not everywhere.
 
 use super::orient;
 use chordal_nurbs::DVec2;
@@ -40,9 +41,9 @@ struct Sweep<'a> {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Triangulates the region to the left of all `loops`, each a run of consecutive `points` (start, end); the outer
-/// ones run counter-clockwise, holes clockwise. Triangles come out counter-clockwise; where vertices touch an edge
-/// or each other some may have no area.
+/// Triangulates the region to the left of all `loops`, each a run of consecutive `points` (start, end); the
+/// outer ones run counter-clockwise, holes clockwise. Triangles come out counter-clockwise; where vertices
+/// touch an edge or each other some may have no area.
 pub fn sweep(points: &[DVec2], loops: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, SweepError> {
     let mut next = vec![0; points.len()];
     let mut previous = vec![0; points.len()];
@@ -182,7 +183,7 @@ impl Sweep<'_> {
         orient(self.point(left), self.point(right), self.point(towards)) > 0.0
     }
 
-    /// The place of an edge that ends at `vertex`.
+    /// The index of the active edge that ends at `vertex`.
     fn locate(&self, vertex: u32, edge: u32) -> Result<usize, SweepError> {
         let p = self.point(vertex);
         let guess = self.active.partition_point(|&e| {
@@ -194,7 +195,8 @@ impl Sweep<'_> {
         near.or_else(|| self.active.iter().position(|&e| e == edge)).ok_or(SweepError { edge, vertex })
     }
 
-    /// The trapezoid beside `edge` ends at `vertex`: the vertex joins the mountain, and cuts off what it can see.
+    /// The trapezoid beside `edge` ends at `vertex`: the vertex joins the mountain and cuts off the vertices
+    /// that it sees.
     fn append(&mut self, edge: u32, vertex: u32) {
         let above = self.interior_above(edge);
         let p = self.point(vertex);
@@ -218,7 +220,8 @@ impl Sweep<'_> {
         self.append(edge, vertex);
         let above = self.interior_above(edge);
         let mut chain = std::mem::take(&mut self.chains[edge as usize]);
-        // What is left lies on the edge itself: cut off from the end as triangles without area.
+        // The remaining vertices lie on the edge itself. They are cut off from the end as triangles without
+        // area.
         while chain.len() > 2 {
             let (a, b, c) = (chain[chain.len() - 3], chain[chain.len() - 2], chain[chain.len() - 1]);
             if orient(self.point(a), self.point(b), self.point(c)) != 0.0 {
