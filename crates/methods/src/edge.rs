@@ -24,12 +24,12 @@ use curve::TrimmingCurve;
 /// The share of the tolerance that curves get where the rest is left to simplification; γ of the document.
 pub(crate) const CURVE_SHARE: f64 = 0.75;
 
-/// How far a curve in space is said to be from its chord.
+/// How the distance between a curve in space and its chord is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// By points at equal parameters.
+    /// Between points at equal parameters.
     Point,
-    /// By the chord as a line.
+    /// From the points of the curve to the line of the chord.
     Line,
 }
 
@@ -51,12 +51,12 @@ impl Cut {
     }
 }
 
-/// Increasing parameters of vertices that are far enough apart to be told apart on the faces.
+/// Increasing parameters of vertices, far enough apart to be distinct on the faces.
 pub fn vertices(edge: &EdgePiece<'_>, found: Vec<f64>) -> Vec<f64> {
     without_specks(edge, increasing(found, edge.range))
 }
 
-/// The curve lifted from the face whose curve in the plane is known best.
+/// The curve lifted from the face whose parameter curve is known best.
 pub fn in_space(
     edge: &EdgePiece<'_>,
     uses: &[EdgeUse<'_, '_>],
@@ -83,11 +83,10 @@ pub fn in_space(
     Some(parameters_of(edge, &polyline.points, &polyline.guesses))
 }
 
-/// Where every face that uses the edge wants a vertex.
+/// Vertices where any face that uses the edge needs one.
 pub fn in_plane(edge: &EdgePiece<'_>, uses: &[EdgeUse<'_, '_>], trace: &mut Trace) -> Option<Vec<f64>> {
     let mut all = Vec::new();
-    // Where a side of the surface is one point, leaves stretch lengths without limit: such faces follow the
-    // edge's others.
+    // At a pole, leaves stretch lengths without limit: such a face follows the other faces of the edge.
     for one in uses.iter().filter(|one| one.surface.poles.is_empty()) {
         let Some(curve) = TrimmingCurve::new(edge, one) else { continue };
         let stops = in_plane::stops(&curve, edge.tolerance)?;
@@ -95,12 +94,12 @@ pub fn in_plane(edge: &EdgePiece<'_>, uses: &[EdgeUse<'_, '_>], trace: &mut Trac
         trace.add("chords in planes of parameters", stops.points.len().saturating_sub(1));
         all.extend(parameters_of(edge, &stops.points, &stops.guesses));
     }
-    // Two faces rarely want the same vertices; what they both want nearly is one.
+    // Two faces rarely need the same vertices; two vertices that nearly coincide become one.
     (!all.is_empty()).then(|| without_slivers(increasing(all, edge.range)))
 }
 
-/// Without vertices nearer to the one before, or to the end, than a tenth of the tolerance: parameters of
-/// points so near to each other are not told apart safely on the faces.
+/// Drops vertices nearer to the one before, or to the end, than a tenth of the tolerance: such points are not
+/// safely distinct on the faces.
 fn without_specks(edge: &EdgePiece<'_>, stops: Vec<f64>) -> Vec<f64> {
     let least = TURN_LENGTH * edge.tolerance;
     let end = edge.curve.point(edge.range.end);
@@ -118,7 +117,7 @@ fn without_specks(edge: &EdgePiece<'_>, stops: Vec<f64>) -> Vec<f64> {
     kept
 }
 
-/// Parameters on the edge's own curve of points that lie on it but for what the file is loose by.
+/// Parameters on the edge's own curve of points that lie on it, up to the inaccuracy of the file.
 fn parameters_of(edge: &EdgePiece<'_>, points: &[DVec3], guesses: &[f64]) -> Vec<f64> {
     let inverter = CurveInverter::new(edge.curve, edge.range);
     points
@@ -132,8 +131,8 @@ fn parameters_of(edge: &EdgePiece<'_>, points: &[DVec3], guesses: &[f64]) -> Vec
         .collect()
 }
 
-/// Uses with a curve of the file first, spline surfaces before others: what is lifted should be the file's
-/// own.
+/// The uses, sorted: those with a parameter curve in the file first, spline surfaces before others, so that
+/// what is lifted is the curve of the file.
 fn best_first<'u, 'a, 's>(uses: &'u [EdgeUse<'a, 's>]) -> Vec<&'u EdgeUse<'a, 's>> {
     let mut sorted: Vec<&EdgeUse<'_, '_>> = uses.iter().collect();
     sorted.sort_by_key(|one| {
@@ -143,7 +142,7 @@ fn best_first<'u, 'a, 's>(uses: &'u [EdgeUse<'a, 's>]) -> Vec<&'u EdgeUse<'a, 's
     sorted
 }
 
-/// Parameters nearer together than this share of the range are one.
+/// Parameters that differ by less than this share of the range are one: rounding.
 const SAME_PARAMETER: f64 = 1e-7;
 
 /// Sorted, with the ends of the range and without repetitions.
@@ -161,7 +160,8 @@ fn increasing(mut found: Vec<f64>, range: Range) -> Vec<f64> {
     kept
 }
 
-/// A chord shorter than this share of itself and the next one is left out.
+/// A chord shorter than this share of itself and the next one is left out: two faces nearly agree on a vertex
+/// there.
 const SLIVER: f64 = 0.05;
 
 fn without_slivers(stops: Vec<f64>) -> Vec<f64> {

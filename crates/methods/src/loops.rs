@@ -1,8 +1,9 @@
-//! The trimming loops of faces as the document makes them: each face its own, whole loops simplified.
+//! The trimming loops of faces as the document makes them: each face has its own, and whole loops are
+//! simplified.
 //!
-//! Source: Balázs, Guthe, Klein 2004, Table 2. Meshes share edges between faces and keep the model's
-//! vertices; these loops do neither. They show what the conversions and approximations cost and yield by
-//! themselves.
+//! Source: Balázs, Guthe, Klein 2004, Table 2. A mesh shares its edges between faces and keeps the model's
+//! vertices; these loops do neither. They measure the cost and the result of the conversions and
+//! approximations alone.
 
 use crate::edge::curve::TrimmingCurve;
 use crate::edge::simplify::simplified;
@@ -14,7 +15,7 @@ use chordal_nurbs::{DVec2, DVec3, UvBox};
 use chordal_tessellate::Stopwatch;
 use chordal_tessellate::method::{EdgePiece, EdgeUse, FaceSurface, resolution};
 
-/// What one method makes of all trimming loops of a part.
+/// The trimming loops of a part by one method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopRow {
     pub method: EdgeMethod,
@@ -24,7 +25,7 @@ pub struct LoopRow {
     pub conversion: f64,
     /// Seconds from Bézier curves to polylines, simplification and repair included.
     pub approximation: f64,
-    /// Vertices set where loops cross in the plane of parameters.
+    /// Vertices that were added where loops cross in the plane of parameters.
     pub crossings: usize,
     /// Coedges without a curve in the plane of parameters; they are not counted.
     pub left_out: usize,

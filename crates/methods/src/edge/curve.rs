@@ -12,7 +12,7 @@
 use chordal_nurbs::{BezierCurve, DVec2, NurbsParameters, NurbsSurface, ParameterMap, Range, Surface, UvBox};
 use chordal_tessellate::method::{EdgePiece, EdgeUse, Near};
 
-/// Where a curve in the plane of parameters came from.
+/// The origin of a curve in the plane of parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     File,
@@ -42,10 +42,12 @@ pub struct TrimmingCurve {
     pub is_native: bool,
 }
 
-/// How far a fitted curve may be from the followed one, as a share of the tolerance.
+/// Largest distance of a fitted curve from the followed edge, as a share of the tolerance. A larger share
+/// costs chords, a smaller one pieces.
 const FIT: f64 = 0.01;
 
-/// How far the file's curve may be from the edge, as a share of the tolerance, before it is not used.
+/// Largest distance of the file's curve from the edge, as a share of the tolerance; curves further off are
+/// not used.
 const AGREES: f64 = 0.25;
 
 /// Points at which an edge is followed to find out where on the surface it lies.
@@ -117,7 +119,7 @@ impl TrimmingCurve {
         let mut places = Vec::with_capacity(PROBES + 1);
         for k in 0..=PROBES {
             let t = edge.range.start + edge.range.length() * k as f64 / PROBES as f64;
-            // Not by the file's curve: it is not here because it was of no use.
+            // Without the file's curve, which is missing or too far off here.
             let place = one.surface.invert_from(edge.curve.point(t), near);
             near = Some(place);
             places.push(place);
@@ -175,7 +177,7 @@ impl Follow<'_, '_, '_, '_> {
         let points = vec![p, p + d * third, q - e * third, q];
         let straight = |from: DVec2, to: DVec2| BezierCurve { points: vec![from, to], weights: None };
         let cubic = BezierCurve { points, weights: None };
-        // A line is what most edges are, and a direction may be undefined at a pole.
+        // Most edges are lines, and a direction may be undefined at a pole.
         [straight(p, q), cubic].into_iter().find(|curve| {
             curve.points.iter().all(|p| p.is_finite())
                 && [0.25, 0.5, 0.75].iter().all(|&s| self.keeps_to(curve.eval(s), a + s * (b - a)))
@@ -187,7 +189,7 @@ impl Follow<'_, '_, '_, '_> {
         let there = self.surface.point(uv);
         let jet = self.edge.curve.jet(t);
         let allowed = FIT * self.edge.tolerance;
-        // Sliding along the edge is no harm.
+        // A shift along the edge does no harm.
         let off = (there - jet.p).reject_from(jet.d1);
         off.length() <= allowed || there.distance(self.surface.point(self.uv(t))) <= allowed
     }

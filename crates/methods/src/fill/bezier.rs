@@ -1,4 +1,4 @@
-//! Bézier patches as quadrilaterals, by the document that has them.
+//! Bézier patches as quadrilaterals.
 //!
 //! Source: Ma and Hewitt 2002, sections 4.1 to 4.5:
 //!
@@ -45,7 +45,7 @@ pub struct BezierQuads {
 
 impl BezierQuads {
     /// # Errors
-    /// A sentence, where the surface has no NURBS form.
+    /// Where the surface has no NURBS form.
     pub fn new(face: &FaceMesh<'_, '_>, measure: Measure) -> Result<Self, MeshIssue> {
         let region = Region::new(face.chart());
         let tolerance = face.limits().tolerance;
@@ -61,12 +61,12 @@ impl BezierQuads {
         Ok(Self { region, cells, lines, tolerance, measure, removed: 0 })
     }
 
-    /// The patches that stay, and those of them that no loop meets.
+    /// The patches that belong to the face, and which of them no loop crosses.
     fn kept(&mut self) -> (Vec<UvBox>, Vec<bool>) {
         let (mut kept, mut inside) = (Vec::new(), Vec::new());
         self.removed = 0;
         for leaf in &self.cells.leaves {
-            // Most of what lies outside was never subdivided.
+            // Most patches outside were never subdivided.
             match if leaf.met { self.lines.place(leaf.bounds) } else { Place::Outside } {
                 Place::Outside => self.removed += 1,
                 place => {
@@ -127,7 +127,7 @@ impl FaceFiller for BezierQuads {
     }
 }
 
-/// What patches became.
+/// How patches were triangulated.
 #[derive(Clone, Copy, Debug, Default)]
 struct Closed {
     quads: usize,

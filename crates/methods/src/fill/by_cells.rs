@@ -33,7 +33,7 @@ const TRANSITIONS: [&str; 4] = [
     "curves run along a border (4)",
 ];
 
-/// Uniform subdivisions are halved at most this often: each time costs four times the triangles, and what is
+/// Uniform subdivisions are halved at most this often. Each time costs four times the triangles, and what is
 /// still too coarse then lies where loops cut cells, which smaller cells do not mend.
 const HALVINGS: usize = 1;
 

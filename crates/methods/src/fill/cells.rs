@@ -1,8 +1,8 @@
-//! The tree of cells over the box of a face's loops, whatever rule cuts them.
+//! The tree of cells over the box of a face's loops, for any rule that cuts them.
 //!
-//! Cells live in the parameters of the surface's NURBS form, their corners also in those of the chart: the
-//! two differ by a monotone map per direction, so lines of constant parameter stay such. A closed spline
-//! surface is cut at its seam first. Cells that the face does not meet are left as they are.
+//! Cells are defined in the parameters of the surface's NURBS form, their corners also in those of the chart.
+//! The two differ by a monotone map in each direction, so lines of constant parameter correspond. A closed
+//! spline surface is cut at its seam first. Cells outside of the face are not cut.
 
 use super::node::Measure;
 use super::region::Region;
@@ -10,7 +10,7 @@ use chordal_brep::MeshIssue;
 use chordal_nurbs::{BezierPatch, DVec2, NurbsParameters, NurbsSurface, ParameterMap, Surface, UvBox};
 use chordal_tessellate::method::{Check, FaceSurface};
 
-/// Where a cell is to be cut: across u (axis 0) or v at this NURBS parameter.
+/// A cut of a cell: across u (axis 0) or v at this NURBS parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
     pub axis: usize,
@@ -21,22 +21,22 @@ pub struct Split {
 pub trait Rule: Send {
     /// The name in the trace.
     fn name(&self) -> &'static str;
-    /// The cuts that every root gets before any error is looked at.
+    /// The cuts that every root gets first, whatever its error.
     fn first_cuts(&self, _root: &NurbsSurface, _tolerance: f64) -> Vec<Split> {
         Vec::new()
     }
     /// The cuts of a cell that is too coarse for `tolerance`; none where it is fine enough.
     fn cuts(&self, piece: &NurbsSurface, tolerance: f64, measure: Measure) -> Vec<Split>;
-    /// The cuts of a cell that was found too coarse by the proof.
+    /// The cuts of a cell that the proof found too coarse.
     fn forced(&self, piece: &NurbsSurface, measure: Measure) -> Vec<Split> {
         self.cuts(piece, 0.0, measure)
     }
     /// How far a trimming curve over this cell may lie from its chord, in the cell's own parameters from 0 to
-    /// 1; none where the method leaves that to the edges.
+    /// 1; `None` where the method does not judge chords.
     fn chord_share(&self, _piece: &NurbsSurface, _tolerance: f64) -> Option<f64> {
         None
     }
-    /// Where one cell is too coarse, all are cut.
+    /// True where all cells are cut as soon as one is too coarse.
     fn is_uniform(&self) -> bool {
         false
     }
@@ -66,11 +66,11 @@ pub struct Cells {
     roots: Vec<UvBox>,
 }
 
-/// No cell is cut more often than this.
+/// Most cuts of one cell; more would make parameters that doubles cannot tell apart.
 const DEEPEST: u32 = 60;
 
-/// Cuts lie at multiples of a root's extent over this: computed twice, on both sides of a border, they must
-/// be one corner.
+/// Cuts lie at multiples of a root's extent over this number, so that both sides of a border get the same
+/// corner.
 const STEPS: f64 = (1u32 << 24) as f64;
 
 /// Cells narrower than this share of the face's box are not cut: their corners would be one.
@@ -84,7 +84,7 @@ impl Cells {
     /// One cell per turn of a closed spline surface, else one.
     ///
     /// # Errors
-    /// A sentence, where the surface has no NURBS form.
+    /// Where the surface has no NURBS form.
     pub fn new(surface: &FaceSurface<'_>, uv_box: UvBox, tolerance: f64) -> Result<Self, MeshIssue> {
         let mut cells = Self { leaves: Vec::new(), maps: Vec::new(), roots: Vec::new() };
         let [us, vs] = [0, 1].map(|axis| root_breaks(surface, uv_box, axis));
@@ -108,7 +108,7 @@ impl Cells {
         Ok(cells)
     }
 
-    /// Cuts every root as the rule does before it looks at errors.
+    /// Makes the first cuts of every root.
     pub fn begin(&mut self, rule: &dyn Rule, region: &Region, tolerance: f64) {
         for i in 0..self.leaves.len() {
             let cuts = rule.first_cuts(&self.leaves[i].piece, tolerance);
@@ -116,10 +116,10 @@ impl Cells {
         }
     }
 
-    /// Cuts all cells that the face meets until the rule is content.
+    /// Cuts all cells that the face meets until the rule has no cut for any of them.
     ///
     /// # Errors
-    /// What `check` says, which is asked now and then.
+    /// An error of `check`, which is called regularly.
     pub fn refine(
         &mut self,
         rule: &dyn Rule,
@@ -149,7 +149,7 @@ impl Cells {
         Ok(())
     }
 
-    /// Cuts the leaves that hold these points of the chart by force; true where any could be cut.
+    /// Cuts the leaves at these points of the chart even if the rule has no cut; true where any could be cut.
     pub fn cut_at(&mut self, points: &[DVec2], rule: &dyn Rule, region: &Region, measure: Measure) -> bool {
         let leaves: Vec<usize> = if rule.is_uniform() {
             (0..self.leaves.len()).filter(|&i| self.leaves[i].met).collect()
@@ -213,8 +213,8 @@ impl Cells {
         true
     }
 
-    /// The parts of a cell, in the order in which the cuts, one after the other, leave them. Every part goes
-    /// on with the cuts that may still meet it: hundreds of cuts make tens of thousands of parts.
+    /// The parts of a cell after a sequence of cuts, in order. Each part keeps only the cuts that may still
+    /// meet it, since hundreds of cuts make tens of thousands of parts.
     fn parts(&self, cell: Cell, cuts: &[Split], narrowest: DVec2) -> Vec<Cell> {
         let mut parts = Vec::new();
         let mut open = vec![(cell, cuts.to_vec())];

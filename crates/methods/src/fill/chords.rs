@@ -14,7 +14,7 @@ use chordal_brep::{Face, Loop, Pcurve};
 use chordal_nurbs::{BezierCurve, DVec2, Range};
 use chordal_tessellate::method::{FaceMesh, Segment};
 
-/// What following the curves found.
+/// The chords that are too coarse, and how the curves were followed.
 #[derive(Clone, Debug, Default)]
 pub struct JudgedChords {
     /// Chords (edge, index) that lie farther from their curves than the rule allows.
@@ -27,7 +27,7 @@ pub struct JudgedChords {
     pub directed: usize,
 }
 
-/// Judges the chords of all loops; nothing where the rule has no opinion.
+/// Judges the chords of all loops; the result is empty where the rule does not judge chords.
 pub fn judge_chords(face: &FaceMesh<'_, '_>, cells: &Cells, rule: &dyn Rule) -> JudgedChords {
     let tolerance = face.limits().boundary;
     let mut found = JudgedChords::default();
@@ -157,7 +157,7 @@ fn through_samples(face: &FaceMesh<'_, '_>, chord: &Chord) -> BezierCurve<DVec2>
         let along = if chord.forward { s } else { 1.0 - s };
         let start = a.lerp(b, s);
         let uv = face.surface().descend(curve.point(from + along * (to - from)), start);
-        // Where the search left the chord's surroundings, it found another part of the surface.
+        // The search left the surroundings of the chord: it found another part of the surface.
         ((uv - start).length() <= (b - a).length()).then_some(uv)
     };
     let (Some(p), Some(q)) = (at(1.0 / 3.0), at(2.0 / 3.0)) else { return straight };

@@ -22,7 +22,7 @@ fn key(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
-/// What lies in the direction from one vertex to another.
+/// What is found in the direction from one vertex to another.
 enum Ahead {
     /// The edge is there.
     Edge,
@@ -43,8 +43,8 @@ impl<'m> Constrained<'m> {
         Self { mesh, incident, fixed: FxHashSet::default() }
     }
 
-    /// Makes `a`–`b` an edge and fixes it; where vertices lie on the way, the pieces between them. False
-    /// where a fixed edge or the boundary is in the way.
+    /// Makes `a`–`b` an edge and fixes it; where vertices lie between them, fixes the pieces. False where a
+    /// fixed edge or the boundary is crossed.
     pub fn force(&mut self, a: u32, b: u32) -> bool {
         let mut from = a;
         // A straight line passes through every vertex at most once.

@@ -1,4 +1,4 @@
-//! Coving: triangles between a boundary and the border of a region inside it, each tessellated by itself.
+//! Coving: triangles between a boundary and the border of a region inside it, which is tessellated by itself.
 //!
 //! Source: the survey of the Blender wiki, "Tessellation Terminology", after Kumar and others 1997 and Piegl
 //! and Tiller 1998: boundaries are often sampled by other rules than the inside (an error bound of their own,
@@ -12,9 +12,9 @@
 //!   │ o────o────o──o│        ╱ coving triangles
 //! ```
 //!
-//! As a strategy the region is that of a uniform grid's cells that keep clear of the loops. Where a triangle
-//! of the strip spans too much ([`super::size`]), no cell had room: the grid gets twice as many lines across,
-//! until one has.
+//! In this method, the region consists of the cells of a uniform grid that keep clear of the loops. If a
+//! triangle of the strip spans too much ([`super::size`]), no cell had room there: the grid gets twice as
+//! many lines across, until one has.
 
 use super::bezier::{fan, halves};
 use super::borders::Borders;
@@ -79,7 +79,7 @@ const MOST_CELLS: usize = 40_000;
 
 impl Coving {
     /// # Errors
-    /// A sentence, where the surface has no NURBS form.
+    /// Where the surface has no NURBS form.
     pub fn new(face: &FaceMesh<'_, '_>, measure: Measure) -> Result<Self, MeshIssue> {
         let region = Region::new(face.chart());
         let tolerance = face.limits().tolerance;
@@ -99,7 +99,7 @@ impl Coving {
     /// Lays down a grid with so many times as many lines.
     ///
     /// # Errors
-    /// A sentence, where the surface has no NURBS form.
+    /// Where the surface has no NURBS form.
     fn regrid(&mut self, face: &FaceMesh<'_, '_>, finer: [usize; 2]) -> Result<(), MeshIssue> {
         self.grid = UniformGrid { finer };
         self.cells = Cells::new(face.surface(), self.region.uv_box, self.tolerance)?;
@@ -165,8 +165,8 @@ impl Coving {
     }
 }
 
-/// The coarsest grid that leaves next to as little too wide as any: twice the cells for a tenth less would be
-/// a bad bargain.
+/// The coarsest grid that leaves about as few triangles too wide as any other. Twice the cells for a tenth
+/// less would not pay.
 fn best_grid(tried: &[(usize, [usize; 2])]) -> [usize; 2] {
     let least = tried.iter().map(|t| t.0).min().unwrap_or(0);
     let enough = least + tried.first().map_or(0, |t| t.0.saturating_sub(least) / 5);
@@ -221,7 +221,7 @@ impl FaceFiller for Coving {
         self.cells.refine(&self.grid, &self.region, self.tolerance, self.measure, check)?;
         let boundary = face.mesh().clone();
         let trace = face.trace().clone();
-        // The grids tried, each with what it leaves too wide.
+        // The grids that were tried, each with the number of triangles that are too wide.
         let mut tried: Vec<(usize, [usize; 2])> = Vec::new();
         loop {
             if !self.lay(face) {

@@ -1,7 +1,7 @@
 //! Cells cut with the loops of the face.
 //!
 //! Sources: Balázs, Guthe, Klein 2004, section 6; Kahlesz, Balázs, Klein 2001, section 7. There a vertex is
-//! set wherever the border of a cell crosses a trimming curve, which the neighbouring face knows nothing of.
+//! added wherever the border of a cell crosses a trimming curve, and the neighbouring face does not have it.
 //! Here edges belong to all their faces, so the crossing moves to the nearer end of the chord that is
 //! crossed:
 //!
@@ -23,7 +23,8 @@ use super::region::Region;
 use chordal_nurbs::{DVec2, UvBox};
 use chordal_tessellate::method::{FaceMesh, Location, Metric};
 
-/// A corner nearer to a chord than this share of its cell's extent gives way to the chord's end.
+/// A corner nearer to a chord than this share of its cell's extent is replaced by the end of the chord. A
+/// smaller share leaves slivers, a larger one distorts the cells.
 const SLIVER: f64 = 0.02;
 
 /// What a corner of cells is in the mesh.
@@ -34,7 +35,7 @@ enum Anchor {
     None,
 }
 
-/// What cutting found.
+/// The result of cutting.
 pub struct CutFace {
     /// Directed pairs of vertices, smaller first, that triangles of different polygons share.
     pub fixed: rustc_hash::FxHashSet<(u32, u32)>,

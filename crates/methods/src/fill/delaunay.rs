@@ -1,12 +1,12 @@
 //! Fill points and a Delaunay triangulation of them with the loops.
 //!
-//! Source: the survey of the Blender wiki, "Delaunay Triangulation". Points are strewn over the face, those
-//! outside its loops are discarded, and the rest is triangulated with the loops as constraints; nothing but
-//! the largest smallest angle decides about the triangles. Uniform points form a grid in the plane of
-//! parameters (as many lines as the uniform grid would have); where that leaves triangles that are too large,
-//! for lack of lines or of room, more points restrict them by size ([`super::size`]). Adaptive ones go where
-//! a triangle of those before deviates too much, its longest side half way inside, as Sheng and Hirsch 1992
-//! restrict triangles by deviation. The common proof has the last word.
+//! Source: the survey of the Blender wiki, "Delaunay Triangulation". Points are distributed over the face,
+//! those outside of its loops are dropped, and the rest is triangulated with the loops as constraints, by the
+//! largest smallest angle alone. *Uniform* points form a grid in the plane of parameters, with as many lines
+//! as the uniform grid; where triangles are then too large, more points restrict them by size
+//! ([`super::size`]). *Adaptive* points are added where a triangle deviates too much, half way along its
+//! longest side inside, as Sheng and Hirsch 1992 restrict triangles by deviation. The proof that all methods
+//! share decides in the end.
 //!
 //! Angles are measured in the plane of parameters, stretched in each direction as the surface is on average.
 
@@ -55,7 +55,8 @@ const FIRST_LINES: usize = 8;
 /// Triangles that the proof found too coarse are restricted to this share of what they were before.
 const TIGHTER: f64 = 0.6;
 
-/// So often the proof may ask for more; what limits of angle want is not found by sizes.
+/// How often the proof may ask for more points. Limits of angle are not reached by size, so more rounds would
+/// not help.
 const MOST_REFINED: usize = 3;
 
 /// Points by size, for each cell of the grid and each vertex of the loops: no face needs as many, so

@@ -1,4 +1,4 @@
-//! Bounds by second derivatives: what a triangle may cost at most, from the derivative patches of Bézier
+//! Bounds by second derivatives: the largest error of a triangle, from the derivative patches of Bézier
 //! pieces.
 //!
 //! Source: Filip, Magedson, Markot 1986, *Surface algorithms using bounds on derivatives*, which the survey

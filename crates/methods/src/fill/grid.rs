@@ -1,4 +1,4 @@
-//! Subdivisions that are laid down at once: the uniform grid, and a fixed number of cells per control cell.
+//! Subdivisions that are made at once: the uniform grid, and a fixed number of cells per control cell.
 //!
 //! Source: the survey of the Blender wiki, "Uniform Grid Cut" and "Direct Tessellation", after Piegl and
 //! Richard 1995; how many lines are needed follows from [`super::derivatives`]. Both guarantee their error
@@ -134,7 +134,7 @@ pub fn fewest(norms: &SecondNorms, tolerance: f64) -> (usize, usize) {
         }
         n += 1.0;
     }
-    // Beyond reach: a bound this loose says nothing, and the proof has the last word.
+    // A bound this loose says nothing; the proof that all methods share decides.
     if best.0 * best.1 <= MOST_CELLS { (best.0 as usize, best.1 as usize) } else { (BEYOND, BEYOND) }
 }
 

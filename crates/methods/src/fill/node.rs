@@ -1,5 +1,5 @@
-//! A node of a subdivision: a piece of the surface in NURBS form, and how far it strays from its four
-//! corners.
+//! A node of a subdivision: a piece of the surface in NURBS form, and its distance from the bilinear surface
+//! through its corners.
 //!
 //! Source: Balázs, Guthe, Klein 2004, section 5.2, in the form of Kahlesz, Balázs, Klein 2001, Lemmas 1 and
 //! 2, with two changes.
@@ -25,7 +25,7 @@
 use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
 use chordal_tessellate::Bound;
 
-/// How large the error of a node is taken to be.
+/// How the error of a node is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// From the control points: a bound.
@@ -44,7 +44,7 @@ impl Measure {
     }
 }
 
-/// What a node's control net says about it.
+/// The flatness of a node by its control net.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flatness {
     /// E.
@@ -98,8 +98,8 @@ impl Flatness {
         let (us, vs) = (greville(p, piece.knots_u(), m), greville(q, piece.knots_v(), n));
         let weights = piece.weights();
         let positive = weights.is_none_or(|w| w.iter().all(|&w| w > 0.0));
-        // Without positive weights the control points bound nothing; the common proof has the last word
-        // anyway.
+        // Without positive weights, the control points bound nothing; the proof that all methods share
+        // decides.
         let sampled = measure == Measure::Estimated || !positive;
         let net: Vec<DVec3> = if sampled {
             us.iter().flat_map(|&u| vs.iter().map(move |&v| piece.point(DVec2::new(u, v)))).collect()
@@ -150,7 +150,7 @@ pub fn off_bilinear(piece: &NurbsSurface) -> f64 {
     sums.into_iter().fold(0.0, |worst: f64, (q, w)| worst.max(q.length() / w))
 }
 
-/// How far lines of the net stray from their chords: the distance, and the abscissa where it is largest.
+/// How far lines of the net lie from their chords: the largest distance, and its abscissa.
 fn bend(abscissae: &[f64], lines: usize, point: impl Fn(usize, usize) -> DVec3) -> (f64, f64) {
     let last = abscissae.len() - 1;
     let (start, length) = (abscissae[0], abscissae[last] - abscissae[0]);

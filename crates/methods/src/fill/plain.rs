@@ -1,4 +1,4 @@
-//! A metric that knows nothing of curvature: the plane of parameters, stretched as the surface is on average.
+//! A metric without curvature: the plane of parameters, stretched as the surface is on average.
 
 use chordal_nurbs::{DVec2, UvBox};
 use chordal_tessellate::method::{FaceSurface, Metric};
@@ -13,7 +13,7 @@ pub fn mean_metric(surface: &FaceSurface<'_>, uv_box: UvBox) -> Metric {
         let own = Metric { uu: jet.du.length_squared(), uv: 0.0, vv: jet.dv.length_squared() };
         sum = sum.plus(own, 1.0 / (N * N) as f64);
     }
-    // A direction in which nothing moves still has a width.
+    // A direction in which the surface does not move still gets a width.
     let floor = 1e-12 * (sum.uu + sum.vv);
     Metric { uu: sum.uu.max(floor), uv: 0.0, vv: sum.vv.max(floor) }
 }

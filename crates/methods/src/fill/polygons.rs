@@ -69,7 +69,7 @@ pub fn retriangulate(
     *mesh = Triangulation::new(points, triangles);
 }
 
-/// What was done with polygons.
+/// How many polygons were triangulated in each way.
 #[derive(Clone, Copy, Default)]
 struct Count {
     bridges: usize,
@@ -137,8 +137,8 @@ fn on_boundary(mesh: &Triangulation) -> Vec<bool> {
     found
 }
 
-/// Only polygons that touch a trimming loop need be asked whether they are convex: others are cells with
-/// vertices in their sides.
+/// Only polygons that touch a trimming loop are tested for convexity: others are cells with vertices in their
+/// sides.
 fn triangulated(
     points: &[DVec2],
     polygon: &Polygon,

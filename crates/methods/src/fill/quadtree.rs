@@ -16,7 +16,7 @@ use super::grid::halves;
 use super::node::{Bilinear, Flatness, Measure};
 use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
 
-/// How a leaf's stretch of lengths is measured.
+/// How it is measured by how much a leaf stretches lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stretch {
     /// The document's equation 3.
@@ -63,7 +63,7 @@ impl Rule for Quadtree {
     }
 }
 
-/// Every inner knot: what is left are Bézier patches.
+/// Cuts at every inner knot: the parts are Bézier patches.
 pub fn at_knots(root: &NurbsSurface) -> Vec<Split> {
     let inner = |axis: usize, breaks: Vec<f64>| {
         let count = breaks.len();
@@ -78,7 +78,7 @@ pub fn norm_by_edges(piece: &NurbsSurface) -> f64 {
     (b - a).length().max((c - a).length() / std::f64::consts::SQRT_2).max((d - a).length())
 }
 
-/// The same as it is: the largest singular value over the corners.
+/// The exact stretch: the largest singular value over the corners.
 pub fn norm(piece: &NurbsSurface) -> f64 {
     let [a, b, c, d] = corners(piece);
     let along_u = [b - a, c - d];

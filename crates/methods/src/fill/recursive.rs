@@ -1,9 +1,10 @@
 //! Recursive subdivision of Bézier patches with a bound from their derivative patches.
 //!
-//! Source: the survey of the Blender wiki, "Recursive Subdivision / Piecewise Bézier". The surface becomes a
-//! quilt of Bézier patches; one whose derivatives allow too large an error is halved across the direction in
-//! which they are larger, and so on. The survey speaks of the first derivative, which bounds how long a step
-//! is; how far a triangle strays is bounded by the second, a patch as well ([`super::derivatives`]).
+//! Source: the survey of the Blender wiki, "Recursive Subdivision / Piecewise Bézier". The surface is split
+//! into Bézier patches; a patch whose derivatives allow too large an error is halved across the direction in
+//! which they are larger, and so on. The survey uses the first derivative, which bounds the length of a step;
+//! the error of a triangle is bounded by the second derivative, which is a patch as well
+//! ([`super::derivatives`]).
 
 use super::cells::{Rule, Split};
 use super::derivatives::SecondNorms;
@@ -31,7 +32,7 @@ impl Rule for Recursive {
             Measure::Estimated => sampled(piece),
         };
         let norms = norms.over(piece.domain().size());
-        // Nothing is gained by halving what is not a number.
+        // Halving does not help where the bound is not a number.
         if norms.error(1.0, 1.0) <= tolerance || norms.error(1.0, 1.0).is_nan() {
             return Vec::new();
         }

@@ -1,4 +1,4 @@
-//! Which patches a face keeps, by scanlines.
+//! Which patches belong to a face, by scanlines.
 //!
 //! Source: Ma and Hewitt 2002, section 4.3. Lines of constant v lie evenly over the box of the outer loop,
 //! the denser the finer the tolerance. Each is cut by the loops in an even number of places, between which it
@@ -19,7 +19,7 @@
 use super::loop_tree::LoopTree;
 use chordal_nurbs::{DVec2, UvBox};
 
-/// What becomes of a patch.
+/// The position of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     Inside,
@@ -42,8 +42,8 @@ pub struct Scanlines {
     pub tangent: usize,
 }
 
-/// So many lines that two neighbours are as far apart as the ends of a chord over an arc as wide as the face:
-/// as many as patches where the face bends half around.
+/// The number of lines for which two neighbours are as far apart as the ends of a chord over an arc as wide
+/// as the face: as many as patches where the face bends half around.
 pub fn lines_for(height_xyz: f64, tolerance: f64) -> usize {
     (height_xyz / tolerance).sqrt().ceil().clamp(LINES.0, LINES.1) as usize
 }

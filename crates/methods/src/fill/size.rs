@@ -18,10 +18,10 @@ use super::region::Region;
 use chordal_nurbs::DVec2;
 use chordal_tessellate::method::{FaceMesh, FaceSurface, NONE};
 
-/// Sides may be off by this many tolerances: halves of sides that are hardly too long would be far too short.
+/// Sides may be off by this many tolerances. Halves of sides that are barely too long would be far too short.
 const SLACK: f64 = 1.25;
 
-/// No point is nearer to a chord than this share of the side that it halves.
+/// A new point keeps this share of the halved side as distance from a chord.
 const BESIDE: f64 = 0.2;
 
 /// A side that is too long for the tolerance.

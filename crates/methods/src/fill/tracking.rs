@@ -30,7 +30,7 @@ pub struct TrackedPiece {
     pub leaf: Option<u32>,
 }
 
-/// What became of a chain.
+/// The result for one chain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tracked {
     pub pieces: Vec<TrackedPiece>,
@@ -85,7 +85,7 @@ pub fn track(mesh: &mut LeafMesh, chain: &[BezierCurve<DVec2>]) -> Tracked {
     found
 }
 
-/// What one transition does.
+/// The result of one transition.
 struct Step {
     transition: usize,
     state: State,
