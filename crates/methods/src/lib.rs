@@ -3,10 +3,12 @@
 //! A [`Strategy`] fills the inside of faces; an [`EdgeMethod`] cuts edges into chords. Both share the proof
 //! and the stitching of the default mesher. [`strategies`] and [`edge_methods`] list them by name.
 
+pub mod compare;
 mod edge;
 mod edge_method;
 mod fill;
 mod loops;
+pub mod papers;
 mod strategy;
 
 pub use edge::Criterion;

@@ -49,9 +49,36 @@ const CHORD_AIM: f64 = 0.985;
 /// none, no shorter one will, and halving on would not end.
 const UNBOUNDED_ROUNDS: usize = 4;
 
+/// Chords of a closed edge: fewer enclose nothing.
+const LEAST_OF_CLOSED: usize = 3;
+
+/// A total that is this little over a whole number is that number: rounding.
+const WHOLE: f64 = 1e-9;
+
+/// How often all chords of a piece are made shorter before single ones are halved, and the most by which they
+/// are made shorter at once. Even chords are fewer than halved ones.
+const EVEN_ROUNDS: usize = 8;
+const MOST_FINER: f64 = 4.0;
+
+/// How often single chords are halved, and the most chords of a piece: limits for curves that never converge.
+const HALVINGS: usize = 24;
+const MOST_CHORDS: usize = 1_000_000;
+
+/// One edge while it is sampled: its curve, the faces that use it, and the limits.
+struct Sampling<'e, 'a, 's> {
+    curve: &'e Curve,
+    /// The range of the edge.
+    range: Range,
+    uses: &'e [EdgeUse<'a, 's>],
+    /// Limits of the edge's own chords.
+    limits: Limits,
+    /// Limits by which the faces need chords.
+    of_faces: Limits,
+}
+
 impl EdgeSamples {
     /// Samples an edge with at least `least` chords.
-    pub fn new(
+    pub(crate) fn new(
         part: &Part,
         edge: &Edge,
         uses: &[EdgeUse<'_, '_>],
@@ -59,38 +86,49 @@ impl EdgeSamples {
         splitter: Option<&dyn EdgeSplitter>,
         least: usize,
     ) -> Self {
-        // Faces need chords as short as their facets do, but never shorter than the tolerance of the edge
-        // needs.
-        let of_faces = &Limits { tolerance: CHORD_AIM * limits.tolerance.max(limits.boundary), ..*limits };
-        let limits = &Limits { tolerance: CHORD_AIM * limits.boundary, ..*limits };
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
             return Self { t: vec![edge.range.start], points: vec![ends[0]], ..Self::default() };
         };
-        let least = if edge.start == edge.end { least.max(3) } else { least };
+        let sampling = Sampling {
+            curve,
+            range: edge.range,
+            uses,
+            limits: Limits { tolerance: CHORD_AIM * limits.boundary, ..*limits },
+            // Faces need chords as short as their facets do, but never shorter than the tolerance of the edge
+            // needs.
+            of_faces: Limits { tolerance: CHORD_AIM * limits.largest(), ..*limits },
+        };
         let mut samples = Self::default();
         samples.t.push(edge.range.start);
-        let mut stops = poles_on_the_way(curve, edge.range, uses);
-        stops.extend(crease_crossings(curve, edge.range, uses));
+        // 1. Pieces between corners, poles and creases.
+        let mut stops = sampling.poles_on_the_way();
+        stops.extend(sampling.crease_crossings());
         let mut pieces = smooth_pieces(curve, edge.range, &stops);
         if splitter.is_none() {
-            pieces = passed_over(pieces, curve, uses, [limits, of_faces]);
+            pieces = passed_over(pieces, &sampling);
         }
-        for smooth in pieces.into_iter().map(|piece| piece.range) {
-            let piece = EdgePiece { curve, whole: edge.range, range: smooth, tolerance: limits.tolerance };
-            let given = splitter.and_then(|s| s.parameters(&piece, uses, &mut samples.trace));
-            match given {
-                Some(t) => samples.add_given(t, curve, smooth, uses, [limits, of_faces]),
-                None => samples.add_smooth(curve, smooth, uses, [limits, of_faces]),
+        // 2. to 4. The chords of each piece.
+        for range in pieces.into_iter().map(|piece| piece.range) {
+            let piece = EdgePiece { curve, whole: edge.range, range, tolerance: sampling.limits.tolerance };
+            match splitter.and_then(|s| s.parameters(&piece, uses, &mut samples.trace)) {
+                Some(t) => samples.add_given(t, &sampling, range),
+                None => samples.add_smooth(&sampling, range),
             }
         }
+        let least = if edge.start == edge.end { least.max(LEAST_OF_CLOSED) } else { least };
         while samples.t.len() < least + 1 {
             samples.t = halved(&samples.t);
         }
-        samples.sag = samples.t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();
-        samples.points = samples.t.iter().map(|&t| curve.point(t)).collect();
+        samples.measure(curve);
         samples.pin_ends(ends);
         samples
+    }
+
+    /// Positions and bounds of the chords between the parameters.
+    fn measure(&mut self, curve: &Curve) {
+        self.sag = self.t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();
+        self.points = self.t.iter().map(|&t| curve.point(t)).collect();
     }
 
     fn pin_ends(&mut self, ends: [DVec3; 2]) {
@@ -101,72 +139,53 @@ impl EdgeSamples {
     }
 
     /// Appends the chords of a piece without corners.
-    fn add_smooth(
-        &mut self,
-        curve: &Curve,
-        range: Range,
-        uses: &[EdgeUse<'_, '_>],
-        [limits, of_faces]: [&Limits; 2],
-    ) {
-        let probes = Probes::new(curve, range, uses, [limits, of_faces]);
-        self.fewest += probes.curvature_total.ceil().max(1.0);
-        let mut count = (probes.total() - 1e-9).ceil().max(1.0) as usize;
-        for _ in 0..8 {
+    fn add_smooth(&mut self, sampling: &Sampling<'_, '_, '_>, range: Range) {
+        let probes = Probes::new(sampling, range);
+        self.fewest += probes.fewest();
+        let allowed = sampling.limits.tolerance;
+        let mut count = (probes.total() - WHOLE).ceil().max(1.0) as usize;
+        for _ in 0..EVEN_ROUNDS {
             let t = probes.spread(count);
-            let worst = t.windows(2).map(|t| curve.chord_error(t[0], t[1])).fold(0.0, f64::max);
+            let worst = t.windows(2).map(|t| sampling.curve.chord_error(t[0], t[1])).fold(0.0, f64::max);
             // Some curves, such as those on offsets of free surfaces, have no finite bound however short the
             // chords are.
             if worst.is_infinite() {
                 break;
             }
-            if worst <= limits.tolerance {
-                self.t.extend_from_slice(&turning_less(t, curve, range, uses, limits)[1..]);
+            if worst <= allowed {
+                self.t.extend_from_slice(&turning_less(t, sampling, range)[1..]);
                 return;
             }
-            let factor = (worst / limits.tolerance).sqrt().clamp(1.0, 4.0);
+            let factor = (worst / allowed).sqrt().clamp(1.0, MOST_FINER);
             count = ((count as f64 * factor).ceil() as usize).max(count + 1);
         }
         // The curve is less even than the probes showed: halve the chords that are still too far off.
-        self.add_halved(probes.spread(count), curve, range, uses, limits);
+        self.add_halved(probes.spread(count), sampling, range);
     }
 
     /// Appends the chords that an edge method made of a piece without corners. Those too far off the curve
     /// are halved.
-    fn add_given(
-        &mut self,
-        t: Vec<f64>,
-        curve: &Curve,
-        range: Range,
-        uses: &[EdgeUse<'_, '_>],
-        [limits, of_faces]: [&Limits; 2],
-    ) {
-        self.fewest += Probes::new(curve, range, uses, [limits, of_faces]).curvature_total.ceil().max(1.0);
+    fn add_given(&mut self, t: Vec<f64>, sampling: &Sampling<'_, '_, '_>, range: Range) {
+        self.fewest += Probes::new(sampling, range).fewest();
         let made = t.len();
         let before = self.t.len();
-        let t = turning_less_between(t, curve, range, uses, limits);
-        self.add_halved(t, curve, range, uses, limits);
+        let t = turning_less_between(t, sampling, range);
+        self.add_halved(t, sampling, range);
         self.trace.add("chords halved for the edge or a face's turn", self.t.len() - before - (made - 1));
     }
 
-    fn add_halved(
-        &mut self,
-        mut t: Vec<f64>,
-        curve: &Curve,
-        range: Range,
-        uses: &[EdgeUse<'_, '_>],
-        limits: &Limits,
-    ) {
-        for round in 0..24 {
+    fn add_halved(&mut self, mut t: Vec<f64>, sampling: &Sampling<'_, '_, '_>, range: Range) {
+        for round in 0..HALVINGS {
             let before = t.len();
             t = split_where(&t, |a, b| {
-                let error = curve.chord_error(a, b);
-                error > limits.tolerance && (error.is_finite() || round < UNBOUNDED_ROUNDS)
+                let error = sampling.curve.chord_error(a, b);
+                error > sampling.limits.tolerance && (error.is_finite() || round < UNBOUNDED_ROUNDS)
             });
-            if t.len() == before || t.len() > 1_000_000 {
+            if t.len() == before || t.len() > MOST_CHORDS {
                 break;
             }
         }
-        self.t.extend_from_slice(&turning_less(t, curve, range, uses, limits)[1..]);
+        self.t.extend_from_slice(&turning_less(t, sampling, range)[1..]);
     }
 
     /// Cuts the named chords into this many parts.
@@ -182,8 +201,7 @@ impl EdgeSamples {
             t.push(pair[1]);
         }
         self.t = t;
-        self.sag = self.t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();
-        self.points = self.t.iter().map(|&t| curve.point(t)).collect();
+        self.measure(curve);
         self.pin_ends(ends);
     }
 }
@@ -203,31 +221,6 @@ fn halved(t: &[f64]) -> Vec<f64> {
     split_where(t, |_, _| true)
 }
 
-/// Parameters at which the curve runs through a pole of a surface. Charts jump there, so there must be a
-/// vertex.
-fn poles_on_the_way(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Vec<f64> {
-    let mut found = Vec::new();
-    if uses.iter().all(|one| one.surface.poles.is_empty()) {
-        return found;
-    }
-    let reach = curve.loose_box(range);
-    for EdgeUse { surface, .. } in uses {
-        let at_end = |p: DVec3| {
-            [range.start, range.end].iter().any(|&t| curve.point(t).distance(p) <= surface.resolution)
-        };
-        for pole in surface.poles.iter().filter(|pole| !at_end(pole.point)) {
-            if pole.point.clamp(reach.min, reach.max).distance(pole.point) > surface.resolution {
-                continue;
-            }
-            let nearest = CurveInverter::new(curve, range).invert(pole.point, None);
-            if nearest.distance <= surface.resolution {
-                found.push(nearest.t);
-            }
-        }
-    }
-    found
-}
-
 /// Samples along an edge to find its crossings with a crease. Two crossings between neighbouring samples are
 /// missed; then a chord passes over the crease, and the proof asks for a finer one.
 const CROSSING_SAMPLES: usize = 64;
@@ -236,32 +229,65 @@ const CROSSING_SAMPLES: usize = 64;
 /// them on either side, which is no crossing.
 const ALONG_CREASE: f64 = 1e4;
 
-/// Parameters at which the edge crosses creases of its faces: there must be a vertex.
-fn crease_crossings(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>]) -> Vec<f64> {
-    let mut found = Vec::new();
-    for one in uses.iter().filter(|u| u.surface.creases.iter().any(|c| !c.is_empty())) {
-        let at = |i: usize| range.start + range.length() * i as f64 / CROSSING_SAMPLES as f64;
-        let mut places: Vec<Near> = Vec::with_capacity(CROSSING_SAMPLES + 1);
-        for i in 0..=CROSSING_SAMPLES {
-            places.push(one.parameters(curve.point(at(i)), at(i), range, places.last().copied()));
+/// Halvings of the interval in which a crossing lies: as many as a double has bits.
+const BISECTIONS: usize = 52;
+
+impl Sampling<'_, '_, '_> {
+    /// Parameters at which the curve runs through a pole of a surface. Charts jump there, so there must be a
+    /// vertex.
+    fn poles_on_the_way(&self) -> Vec<f64> {
+        let Self { curve, range, uses, .. } = *self;
+        let mut found = Vec::new();
+        if uses.iter().all(|one| one.surface.poles.is_empty()) {
+            return found;
         }
-        for (axis, creases) in one.surface.creases.iter().enumerate() {
-            for &value in creases {
-                let off = |p: DVec2| one.surface.offset_from(axis, value, p);
-                // Rounding puts the samples of an edge along the crease on either side of it.
-                let rounding = ALONG_CREASE * one.surface.surface.beside_crease(axis, value);
-                for i in 0..CROSSING_SAMPLES {
-                    let (a, b) = (off(places[i].uv), off(places[i + 1].uv));
-                    let far = one.surface.periods[axis].is_some_and(|p| (a - b).abs() > 0.5 * p);
-                    if (a < 0.0) != (b < 0.0) && !far && a.abs().max(b.abs()) > rounding {
-                        let side = |t: f64| off(one.parameters(curve.point(t), t, range, Some(places[i])).uv);
-                        found.push(bisect(side, at(i), at(i + 1), 52));
+        let reach = curve.loose_box(range);
+        for EdgeUse { surface, .. } in uses {
+            let at_end = |p: DVec3| {
+                [range.start, range.end].iter().any(|&t| curve.point(t).distance(p) <= surface.resolution)
+            };
+            for pole in surface.poles.iter().filter(|pole| !at_end(pole.point)) {
+                if pole.point.clamp(reach.min, reach.max).distance(pole.point) > surface.resolution {
+                    continue;
+                }
+                let nearest = CurveInverter::new(curve, range).invert(pole.point, None);
+                if nearest.distance <= surface.resolution {
+                    found.push(nearest.t);
+                }
+            }
+        }
+        found
+    }
+
+    /// Parameters at which the edge crosses creases of its faces: there must be a vertex.
+    fn crease_crossings(&self) -> Vec<f64> {
+        let Self { curve, range, uses, .. } = *self;
+        let mut found = Vec::new();
+        for one in uses.iter().filter(|u| u.surface.creases.iter().any(|c| !c.is_empty())) {
+            let at = |i: usize| range.start + range.length() * i as f64 / CROSSING_SAMPLES as f64;
+            let mut places: Vec<Near> = Vec::with_capacity(CROSSING_SAMPLES + 1);
+            for i in 0..=CROSSING_SAMPLES {
+                places.push(one.parameters(curve.point(at(i)), at(i), range, places.last().copied()));
+            }
+            for (axis, creases) in one.surface.creases.iter().enumerate() {
+                for &value in creases {
+                    let off = |p: DVec2| one.surface.offset_from(axis, value, p);
+                    // Rounding puts the samples of an edge along the crease on either side of it.
+                    let rounding = ALONG_CREASE * one.surface.surface.beside_crease(axis, value);
+                    for i in 0..CROSSING_SAMPLES {
+                        let (a, b) = (off(places[i].uv), off(places[i + 1].uv));
+                        let far = one.surface.periods[axis].is_some_and(|p| (a - b).abs() > 0.5 * p);
+                        if (a < 0.0) != (b < 0.0) && !far && a.abs().max(b.abs()) > rounding {
+                            let side =
+                                |t: f64| off(one.parameters(curve.point(t), t, range, Some(places[i])).uv);
+                            found.push(bisect(side, at(i), at(i + 1), BISECTIONS));
+                        }
                     }
                 }
             }
         }
+        found
     }
-    found
 }
 
 /// How many chords per unit of parameter one smooth piece needs.
@@ -274,13 +300,14 @@ struct Probes {
 }
 
 impl Probes {
-    fn new(curve: &Curve, range: Range, uses: &[EdgeUse<'_, '_>], [limits, of_faces]: [&Limits; 2]) -> Self {
+    fn new(sampling: &Sampling<'_, '_, '_>, range: Range) -> Self {
+        let Sampling { curve, uses, limits, of_faces, .. } = sampling;
         let mut breaks = vec![range.start];
         breaks.extend(curve.all_breaks(range));
         breaks.push(range.end);
         // Curves without knots still vary: an ellipse, or a long edge on a curved face, is probed as if it
         // had some.
-        let parts = match (curve, breaks.len()) {
+        let parts = match (*curve, breaks.len()) {
             (Curve::Line { .. } | Curve::Circle { .. }, _) => 1,
             (_, 2) => 4,
             (_, 3..=5) => 2,
@@ -306,6 +333,11 @@ impl Probes {
             }
         }
         probes
+    }
+
+    /// The fewest chords by the curvature of the curve alone.
+    fn fewest(&self) -> f64 {
+        self.curvature_total.ceil().max(1.0)
     }
 
     fn total(&self) -> f64 {

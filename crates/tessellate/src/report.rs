@@ -71,3 +71,13 @@ pub struct PartReport {
     pub rounds: usize,
     pub seconds: StageSeconds,
 }
+
+impl PartReport {
+    /// The parts of the mesher that ran: the name, the faces for which it ran (none for parts that work on edges) and
+    /// the number of things that it made. A name occurs several times.
+    pub fn stages(&self) -> impl Iterator<Item = (&'static str, usize, usize)> + '_ {
+        let of_edges = self.edge_trace.parts().map(|(name, count)| (name, 0, count));
+        let of_faces = self.faces.iter().flat_map(|face| face.trace.parts());
+        of_edges.chain(of_faces.map(|(name, count)| (name, 1, count)))
+    }
+}

@@ -2,9 +2,7 @@
 //! corners occur in polylines through points of a smooth curve: they are vertices only where no chord may
 //! pass over them.
 
-use super::Probes;
-use crate::edge_use::EdgeUse;
-use crate::limits::Limits;
+use super::{Probes, Sampling};
 use chordal_nurbs::{Curve, Range, Surface};
 
 /// A change of direction of more than this, in radians, is a corner. Smaller ones are rounding of the file.
@@ -53,25 +51,20 @@ pub(super) fn smooth_pieces(curve: &Curve, range: Range, stops: &[f64]) -> Vec<P
 
 /// Joins pieces where one chord may pass over the soft corners between them: within the tolerance, and no
 /// longer than the faces at the edge need.
-pub(super) fn passed_over(
-    pieces: Vec<Piece>,
-    curve: &Curve,
-    uses: &[EdgeUse<'_, '_>],
-    limits: [&Limits; 2],
-) -> Vec<Piece> {
+pub(super) fn passed_over(pieces: Vec<Piece>, sampling: &Sampling<'_, '_, '_>) -> Vec<Piece> {
     if !pieces.iter().any(|piece| piece.soft) {
         return pieces;
     }
-    let flat = uses.iter().all(|u| matches!(u.surface.surface, Surface::Plane { .. }));
-    let allowed = limits[0].tolerance * if flat { 1.0 } else { BESIDE_CURVED };
+    let flat = sampling.uses.iter().all(|u| matches!(u.surface.surface, Surface::Plane { .. }));
+    let allowed = sampling.limits.tolerance * if flat { 1.0 } else { BESIDE_CURVED };
     let mut joined: Vec<Piece> = Vec::with_capacity(pieces.len());
     let mut chords = 0.0;
     for piece in pieces {
-        let own = Probes::new(curve, piece.range, uses, limits).total();
+        let own = Probes::new(sampling, piece.range).total();
         chords += own;
         if let Some(last) = joined.last_mut().filter(|_| piece.soft && chords <= 1.0) {
             let longer = Range::new(last.range.start, piece.range.end);
-            if curve.chord_error(longer.start, longer.end) <= allowed {
+            if sampling.curve.chord_error(longer.start, longer.end) <= allowed {
                 last.range = longer;
                 continue;
             }

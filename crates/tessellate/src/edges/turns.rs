@@ -1,22 +1,16 @@
 //! Chords are halved until no face turns further along them than the limit of angle.
 
-use super::split_where;
-use crate::edge_use::EdgeUse;
-use crate::limits::{Limits, TURN_LENGTH, turns_too_far};
-use chordal_nurbs::{Curve, Range};
+use super::{Sampling, split_where};
+use crate::limits::{TURN_LENGTH, turns_too_far};
+use chordal_nurbs::Range;
 
 /// A chord is halved at most this often for the turn of a face: two to this power is finer than any surface
 /// needs.
 const MAX_HALVINGS: usize = 24;
 
 /// Halves chords between whose ends a face turns further than allowed. The face may bend between two probes.
-pub(super) fn turning_less(
-    mut t: Vec<f64>,
-    curve: &Curve,
-    range: Range,
-    uses: &[EdgeUse<'_, '_>],
-    limits: &Limits,
-) -> Vec<f64> {
+pub(super) fn turning_less(mut t: Vec<f64>, sampling: &Sampling<'_, '_, '_>, range: Range) -> Vec<f64> {
+    let Sampling { curve, uses, limits, .. } = sampling;
     // The ends may lie on creases. Normals this far inside belong to this piece.
     let inside = Range::new(range.start + 1e-7 * range.length(), range.end - 1e-7 * range.length());
     for one in uses.iter().filter(|u| !u.surface.is_elementary()) {
@@ -60,11 +54,10 @@ const TURN_PROBES: [f64; 3] = [0.25, 0.5, 0.75];
 /// beside such a chord could reach past the place in between.
 pub(super) fn turning_less_between(
     mut t: Vec<f64>,
-    curve: &Curve,
+    sampling: &Sampling<'_, '_, '_>,
     range: Range,
-    uses: &[EdgeUse<'_, '_>],
-    limits: &Limits,
 ) -> Vec<f64> {
+    let Sampling { curve, uses, limits, .. } = sampling;
     if limits.angle >= std::f64::consts::PI {
         return t;
     }
