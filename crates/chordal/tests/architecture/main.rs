@@ -115,17 +115,18 @@ fn crates_with_their_tests_are_in_no_circle() {
     assert_eq!(found, known, "{}", graph.cycles().join("\n"));
 }
 
-/// A stranger must be able to read the default mesher in a few days. What grows past this belongs into a crate of its own.
-const MOST_LINES_OF_THE_MESHER: usize = 8_000;
+/// Lines of code of the default mesher: a stranger must be able to read it in a few days. What grows past this belongs
+/// into a crate of its own. Comments, blank lines and tests do not count, so that none is left out for the limit.
+const MOST_LINES_OF_THE_MESHER: usize = 7_000;
 
 #[test]
 fn the_default_mesher_stays_small() {
     let lines = lines_below(&workspace().join("crates/tessellate/src"));
     assert!(lines > 1_000, "the sources of the mesher are not found");
-    assert!(lines < MOST_LINES_OF_THE_MESHER, "crates/tessellate/src has {lines} lines");
+    assert!(lines < MOST_LINES_OF_THE_MESHER, "crates/tessellate/src has {lines} lines of code");
 }
 
-/// Lines of all Rust files in a folder and below it, without the tests at their ends.
+/// Lines of code of all Rust files in a folder and below it, without the tests at their ends.
 fn lines_below(folder: &Path) -> usize {
     let entries = std::fs::read_dir(folder).expect("the folder can be read").flatten();
     let lines = |path: PathBuf| {
@@ -135,7 +136,8 @@ fn lines_below(folder: &Path) -> usize {
         let is_rust = path.extension().is_some_and(|e| e == "rs");
         let count = || {
             let text = std::fs::read_to_string(&path).expect("the file can be read");
-            text.lines().take_while(|line| *line != "#[cfg(test)]").count()
+            let is_code = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with("//");
+            text.lines().take_while(|line| *line != "#[cfg(test)]").filter(is_code).count()
         };
         if is_rust { count() } else { 0 }
     };
