@@ -110,8 +110,12 @@ pub fn surface_methods() -> Vec<SurfaceMethod> {
     let planar = EdgeMethod::Bezier2d;
     let mut methods =
         vec![SurfaceMethod { strategy: Some(quadtree), edge_method: Some(planar), bound: Bound::Proven }];
-    let lifted_with =
-        [quadtree, Strategy::Binary(Cut::Midpoint), Strategy::Kd(Cut::Midpoint), Strategy::Kd(Cut::WorstPoint)];
+    let lifted_with = [
+        quadtree,
+        Strategy::Binary(Cut::Midpoint),
+        Strategy::Kd(Cut::Midpoint),
+        Strategy::Kd(Cut::WorstPoint),
+    ];
     let pairs = lifted_with.into_iter().map(|strategy| (Some(strategy), lifted)).chain([(None, None)]);
     for (strategy, edge_method) in pairs {
         let with_bound = |bound| SurfaceMethod { strategy, edge_method, bound };

@@ -230,7 +230,7 @@ const CROSSING_SAMPLES: usize = 64;
 const ALONG_CREASE: f64 = 1e4;
 
 /// Halvings of the interval in which a crossing lies: as many as a double has bits.
-const BISECTIONS: usize = 52;
+const BISECTIONS: u32 = 52;
 
 impl Sampling<'_, '_, '_> {
     /// Parameters at which the curve runs through a pole of a surface. Charts jump there, so there must be a

@@ -70,14 +70,7 @@ impl<'a> PartJob<'a> {
 
     /// Why a face is not even tried.
     pub fn unusable(&self, face: usize) -> Option<MeshIssue> {
-        unusable(&self.part.faces[face])
-    }
-}
-
-fn unusable(face: &Face) -> Option<MeshIssue> {
-    match &face.geometry {
-        FaceGeometry::Failed(issue) => Some(MeshIssue::NotRead { reason: issue.about(face.source) }),
-        FaceGeometry::Surface(_) => None,
+        self.part.faces[face].failure().map(|_| MeshIssue::NotRead)
     }
 }
 
@@ -96,7 +89,7 @@ fn exact_surface(face: &Face) -> Option<Cow<'_, Surface>> {
 
 fn uses_of_edges(part: &Part) -> Vec<Vec<(usize, Option<&Pcurve>)>> {
     let mut uses = vec![Vec::new(); part.edges.len()];
-    for (f, face) in part.faces.iter().enumerate().filter(|(_, face)| unusable(face).is_none()) {
+    for (f, face) in part.faces.iter().enumerate().filter(|(_, face)| face.failure().is_none()) {
         for a_loop in &face.loops {
             let Loop::Edges { coedges, .. } = a_loop else { continue };
             for coedge in coedges {

@@ -140,7 +140,7 @@ impl<'j, 'a> Pass<'j, 'a> {
             return Ok(Err(issue));
         }
         let Some(surface) = job.surfaces[face].as_ref() else {
-            return Ok(Err(MeshIssue::NotRead { reason: "the surface is missing".into() }));
+            return Ok(Err(MeshIssue::NotRead));
         };
         if job.cancel.is_cancelled() {
             return Ok(Err(MeshIssue::Cancelled));

@@ -10,11 +10,8 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum MeshIssue {
-    /// The reader made no surface for the face.
-    NotRead {
-        /// The reader's reason.
-        reason: String,
-    },
+    /// The reader made no surface for the face; the face itself carries the reason.
+    NotRead,
     /// The job was cancelled before the face was finished.
     Cancelled,
     /// The time limit of one face was reached.
@@ -96,7 +93,7 @@ impl MeshIssue {
     /// A stable name for programs to match.
     pub fn code(&self) -> &'static str {
         match self {
-            MeshIssue::NotRead { .. } => "face-not-read",
+            MeshIssue::NotRead => "face-not-read",
             MeshIssue::Cancelled => "cancelled",
             MeshIssue::OutOfTime { .. } => "out-of-time",
             MeshIssue::TooManyTriangles { .. } => "too-many-triangles",
@@ -128,7 +125,7 @@ impl MeshIssue {
 impl fmt::Display for MeshIssue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            MeshIssue::NotRead { reason } => f.write_str(reason),
+            MeshIssue::NotRead => f.write_str("the face could not be read"),
             MeshIssue::Cancelled => f.write_str("cancelled"),
             MeshIssue::OutOfTime { elements } => {
                 write!(f, "time limit of the face reached at {}", count(*elements, "triangle", "triangles"))
