@@ -48,6 +48,9 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &mut [Meshe
 }
 
 fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options, scale: f64) -> AuditedPart {
+    // Where loops were untangled, the mesh is of the healed part.
+    let healed = meshed.report.healed.clone();
+    let part = healed.as_deref().unwrap_or(part);
     let claims: Vec<Claim> = meshed.report.faces.iter().map(claim).collect();
     let asked = AuditOptions::new(options.largest_tolerance())
         .with_angle(options.angle)

@@ -11,6 +11,7 @@ use crate::limits::Limits;
 use crate::options::{Cancel, Options};
 use crate::prove::Prover;
 use crate::triangulate::clip_ears;
+use crate::uncross::loops_cross;
 use crate::unroll::Chart;
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{DVec2, SurfaceBounds, UvBox};
@@ -86,7 +87,10 @@ fn attempt(
             return Err(Setback::CoarseEdges(shut));
         }
     }
-    Ok(Box::new(face.finish(proof, options.bound, options.quads)))
+    let crossed = are_loops_crossing || loops_cross(face.chart());
+    let mut result = face.finish(proof, options.bound, options.quads);
+    result.crossed = crossed;
+    Ok(Box::new(result))
 }
 
 /// Triangles of loops that cross: as good as they can be, where the loops cross in truth.

@@ -30,6 +30,8 @@ pub(crate) struct FaceContext<'a, 's> {
     pub edges: &'a [EdgeSamples],
     /// Inner edges that it must do without: another face has them.
     pub doubled: &'a [SharedEdge],
+    /// Loops of the face meet in vertices: each is one place in the chart.
+    pub touching: bool,
     /// Points nearer together than this are the same point.
     pub resolution: f64,
 }

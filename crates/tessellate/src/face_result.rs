@@ -25,6 +25,8 @@ pub(crate) struct FaceResult {
     pub triangles: Vec<[u32; 3]>,
     /// Edges between triangles that other faces may have too.
     pub inner: Vec<SharedEdge>,
+    /// Its loops cross in truth.
+    pub crossed: bool,
     /// The first `2 · quads` triangles are halves of quadrilaterals.
     pub quads: usize,
     /// The outer loop contradicts the face's sense; the neighbours decide which of the two is right.

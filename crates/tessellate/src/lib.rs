@@ -8,7 +8,9 @@
 //!    (`chart`, `unroll`), triangulate them (`triangulate`), fill the inside (`fill_loop`, `rows`), and prove
 //!    every triangle (`prove`). A face that finds an edge too coarse asks for finer chords; the requests of a
 //!    round are merged, and only the faces at those edges run again.
-//! 4. Join the faces (`orient`, `stitch`).
+//! 4. Where loops cross in truth, give the model vertices there and loops that do not, and mesh it again
+//!    (`uncross`).
+//! 5. Join the faces (`orient`, `stitch`).
 //!
 //! How hard a face is tried, and in which order remedies are taken, is written down in `effort`. Other crates
 //! may fill faces and cut edges in their own ways ([`method`]).
@@ -28,6 +30,7 @@ mod fallback;
 mod fill_loop;
 mod fill_method;
 mod keys;
+mod known_faces;
 mod limits;
 mod lower_bound;
 pub mod method;
@@ -50,6 +53,7 @@ mod stitch;
 mod surface;
 mod trace;
 mod triangulate;
+mod uncross;
 mod unroll;
 
 pub use bulk::Bulk;

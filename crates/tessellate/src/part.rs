@@ -1,21 +1,32 @@
 //! The stages of one part, top to bottom.
 
+use crate::chart::FaceContext;
 use crate::clock::Stopwatch;
 use crate::edges::EdgeSamples;
+use crate::effort::Effort;
 use crate::face_result::{FaceResult, Meshed};
 use crate::fallback::leave_to_default;
+use crate::known_faces::KnownFaces;
 use crate::lower_bound::lower_bound;
 use crate::options::{Cancel, Options};
 use crate::orient::{settle_orientation, turn_inside_out};
+use crate::panics::caught;
 use crate::part_job::{PartJob, exact_surfaces};
 use crate::pcurve_gap::pcurve_gap;
 use crate::report::{FaceReport, PartReport};
 use crate::rounds::{Pass, PassResult};
 use crate::shared_inner_edges::separate;
 use crate::stitch::stitch;
+use crate::uncross::{Crossed, Uncrossed, uncrossed};
+use crate::unroll::Chart;
 use chordal_brep::Part;
 use chordal_mesh::PartMesh;
 use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Loops that cross are made anew this often: each time edges have other chords, which may show crossings that
+/// coarser ones did not.
+const HEALINGS: usize = 3;
 
 /// Meshes one part. Never fails as a whole: a face that cannot be meshed is reported with its reason.
 ///
@@ -26,11 +37,58 @@ pub fn tessellate_part(
     cancel: &Cancel,
     done: &(dyn Fn(usize) + Sync),
 ) -> (PartMesh, PartReport) {
+    let mut known = KnownFaces::default();
+    let mut made = mesh_once(part, &known, options, cancel, done);
+    for _ in 0..HEALINGS {
+        let is_new = made.crossed.iter().any(|face| !known.touching.contains(face));
+        let uncrossed = made.uncrossed.take();
+        if uncrossed.is_none() && !is_new || cancel.is_cancelled() {
+            break;
+        }
+        known.touching.extend(&made.crossed);
+        let (healed, crossings) = match uncrossed {
+            Some(uncrossed) => {
+                known.flat.extend(&uncrossed.flat);
+                (Some(Arc::new(uncrossed.part)), uncrossed.faces)
+            }
+            None => (made.report.healed.clone(), Vec::new()),
+        };
+        let again = mesh_once(healed.as_deref().unwrap_or(part), &known, options, cancel, &|_| ());
+        // What still crosses is left as the file has it.
+        if again.crossed.len() >= made.crossed.len() {
+            break;
+        }
+        let before = std::mem::replace(&mut made, again).report;
+        let report = &mut made.report;
+        report.faces.iter_mut().zip(&before.faces).for_each(|(new, old)| new.untangled = old.untangled);
+        crossings.iter().for_each(|&(face, count)| report.faces[face].untangled += count.max(1));
+        report.healed = healed;
+    }
+    (made.mesh, made.report)
+}
+
+/// A part meshed once.
+struct MeshedOnce {
+    mesh: PartMesh,
+    report: PartReport,
+    /// Faces whose loops cross, or that failed, perhaps for that.
+    crossed: Vec<usize>,
+    /// The part with other loops for those.
+    uncrossed: Option<Uncrossed>,
+}
+
+fn mesh_once(
+    part: &Part,
+    known: &KnownFaces,
+    options: &Options,
+    cancel: &Cancel,
+    done: &(dyn Fn(usize) + Sync),
+) -> MeshedOnce {
     let mut report = PartReport::default();
     // 1. Prepare the surfaces.
     let clock = Stopwatch::of_wall();
     let exact = exact_surfaces(part);
-    let job = PartJob::new(part, &exact, options, cancel);
+    let job = PartJob::new(part, &exact, options, cancel).with_known(known.clone());
     report.seconds.heal = clock.seconds();
     // 2. Sample the edges.
     let clock = Stopwatch::of_wall();
@@ -44,6 +102,8 @@ pub fn tessellate_part(
     separate(&pass, &mut result);
     let result = leave_to_default(&job, result);
     report.seconds.faces = clock.seconds();
+    let crossed = crossed_faces(&job, &result);
+    let uncrossed = uncrossed_part(&job, &result.edges, &crossed);
     // 4. Join the faces.
     let clock = Stopwatch::of_wall();
     let PassResult { edges, edge_faults, faces, rounds } = result;
@@ -55,7 +115,50 @@ pub fn tessellate_part(
     turn_inside_out(part, &edges, &mut faces);
     let mesh = stitch(part, &edges, &faces);
     report.seconds.stitch = clock.seconds();
-    (mesh, report)
+    MeshedOnce { mesh, report, crossed, uncrossed }
+}
+
+fn crossed_faces(job: &PartJob<'_>, result: &PassResult) -> Vec<usize> {
+    let is_crossed = |face: &usize| match &result.faces[*face] {
+        Ok(result) => result.crossed,
+        Err(_) => job.unusable(*face).is_none(),
+    };
+    (0..result.faces.len()).filter(is_crossed).collect()
+}
+
+/// The part with loops that do not cross, where faces have some that do.
+fn uncrossed_part(job: &PartJob<'_>, edges: &[EdgeSamples], crossed: &[usize]) -> Option<Uncrossed> {
+    if crossed.is_empty() || job.cancel.is_cancelled() {
+        return None;
+    }
+    let contexts: Vec<(usize, FaceContext<'_, '_>)> = crossed
+        .iter()
+        .filter_map(|&face| {
+            let context = FaceContext {
+                part: job.part,
+                face: &job.part.faces[face],
+                surface: job.surfaces[face].as_ref()?,
+                edges,
+                doubled: &[],
+                touching: job.known.touching.contains(&face),
+                resolution: job.resolution,
+            };
+            Some((face, context))
+        })
+        .collect();
+    let seam_chord = Effort::of_round(0).seam_chord();
+    // A panic of ours leaves the part as it is.
+    let healed = caught(|| {
+        let charts: Vec<Crossed<'_, '_>> = contexts
+            .iter()
+            .filter_map(|(face, context)| {
+                let chart = Chart::new(context, &job.limits, seam_chord, false).ok()?;
+                Some(Crossed { face: *face, context, chart })
+            })
+            .collect();
+        uncrossed(job.part, &charts, job.resolution, job.limits.tolerance)
+    });
+    healed.ok().flatten()
 }
 
 fn face_reports(job: &PartJob<'_>, edges: &[EdgeSamples], faces: &[Meshed]) -> Vec<FaceReport> {

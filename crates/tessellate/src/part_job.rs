@@ -1,6 +1,7 @@
 //! What all stages of one part share: its surfaces, the uses of its edges, and the limits.
 
 use crate::edge_use::EdgeUse;
+use crate::known_faces::KnownFaces;
 use crate::limits::{Limits, resolution};
 use crate::options::{Cancel, Options};
 use crate::surface::FaceSurface;
@@ -19,6 +20,7 @@ pub(crate) struct PartJob<'a> {
     pub options: &'a Options,
     pub cancel: &'a Cancel,
     pub resolution: f64,
+    pub known: KnownFaces,
     /// Of every face; none where the reader made none.
     pub surfaces: Vec<Option<FaceSurface<'a>>>,
     /// Of every edge: the faces that use it, each with its curve in that face's parameters.
@@ -47,10 +49,17 @@ impl<'a> PartJob<'a> {
             options,
             cancel,
             resolution,
+            known: KnownFaces::default(),
             surfaces: exact.iter().map(|s| s.as_deref().map(|s| FaceSurface::new(s, resolution))).collect(),
             uses: uses_of_edges(part),
             reach: part.faces.iter().map(|face| reach(part, face)).collect(),
         }
+    }
+
+    /// The same with what earlier passes found out.
+    pub fn with_known(mut self, known: KnownFaces) -> Self {
+        self.known = known;
+        self
     }
 
     /// The faces that use an edge.

@@ -1,8 +1,9 @@
 //! The result of meshing a part, face by face.
 
 use crate::trace::Trace;
-use chordal_brep::MeshIssue;
+use chordal_brep::{MeshIssue, Part};
 use chordal_nurbs::UvBox;
+use std::sync::Arc;
 
 /// The result for one face.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,6 +32,8 @@ pub struct FaceReport {
     pub cells: Vec<UvBox>,
     /// Why the face has no triangles.
     pub failed: Option<MeshIssue>,
+    /// Crossings of its loops at which the model was given a vertex (see [`PartReport::healed`]).
+    pub untangled: usize,
     /// The face has no area at the accuracy of the model; it has no triangles and needs none.
     pub zero_area: bool,
 }
@@ -70,6 +73,9 @@ pub struct PartReport {
     /// Rounds in which faces asked for finer edges.
     pub rounds: usize,
     pub seconds: StageSeconds,
+    /// The model that was meshed instead of the one given, where loops of faces crossed: the same faces with edges cut at
+    /// the crossings and loops that do not cross. The mesh names its edges and vertices.
+    pub healed: Option<Arc<Part>>,
 }
 
 impl PartReport {

@@ -13,7 +13,7 @@ use crate::attempts::mesh_face;
 use crate::chart::FaceContext;
 use crate::edges::EdgeSamples;
 use crate::effort::{Effort, MAX_ROUNDS, Setback};
-use crate::face_result::Meshed;
+use crate::face_result::{FaceResult, Meshed};
 use crate::keys::SharedEdge;
 use crate::options::Options;
 use crate::panics::caught;
@@ -139,6 +139,9 @@ impl<'j, 'a> Pass<'j, 'a> {
         if let Some(issue) = job.unusable(face) {
             return Ok(Err(issue));
         }
+        if job.known.flat.contains(&face) {
+            return Ok(Ok(Box::new(FaceResult { bound: "no area", ..FaceResult::default() })));
+        }
         let Some(surface) = job.surfaces[face].as_ref() else {
             return Ok(Err(MeshIssue::NotRead));
         };
@@ -151,6 +154,7 @@ impl<'j, 'a> Pass<'j, 'a> {
             surface,
             edges,
             doubled,
+            touching: job.known.touching.contains(&face),
             resolution: job.resolution,
         };
         let options = self.options_of_face(face);

@@ -24,6 +24,7 @@ use crate::snap::{Grid, settled};
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 use cuts::{Side, hold_beside};
+use std::collections::BTreeMap;
 use winding::seam_beside;
 
 /// The face as polygons: outer loops counter-clockwise, holes clockwise.
@@ -40,6 +41,10 @@ pub struct Chart {
     /// Where points inside belong.
     pub grid: Grid,
 }
+
+/// The places of one vertex in a chart are one where they lie nearer together than this share of the chart: the
+/// two sides of a seam are further apart.
+const SAME_VERTEX: f64 = 1e-2;
 
 /// A chord of a seam is halved at most this often.
 const SEAM_DEPTH: usize = 12;
@@ -74,6 +79,9 @@ impl Chart {
         let mut polygons = unroll.nest(outer, plain)?;
         let grid = Grid::over(UvBox::from_points(polygons.iter().flatten().map(|p| p.uv)).size());
         polygons.iter_mut().flatten().for_each(|p| p.uv = grid.snap(p.uv));
+        if context.touching {
+            unroll.join_vertices(&mut polygons);
+        }
         if creased {
             polygons = unroll.cut_at_creases(polygons);
         }
@@ -132,6 +140,32 @@ impl Unroll<'_, '_> {
     pub fn add_private(&mut self, p_uv: DVec2) -> Key {
         self.private.push(self.context.surface.point(p_uv));
         Key::Private(self.private.len() as u32 - 1)
+    }
+
+    /// A vertex that loops pass more than once has one place in the chart, so that they touch there and do not
+    /// cross.
+    fn join_vertices(&self, polygons: &mut [Vec<ChartPoint>]) {
+        let extent = UvBox::from_points(polygons.iter().flatten().map(|p| p.uv)).size();
+        let surface = self.context.surface;
+        let mut places: BTreeMap<u32, Vec<DVec2>> = BTreeMap::new();
+        for point in polygons.iter_mut().flatten() {
+            let Key::Vertex(v) = point.key else { continue };
+            let known = places.entry(v).or_default();
+            let vertex = self.context.part.vertices[v as usize].point;
+            let same = known.iter().find(|&&uv| {
+                let apart = (uv - point.uv).abs();
+                let beside = apart.x <= SAME_VERTEX * extent.x && apart.y <= SAME_VERTEX * extent.y;
+                let off = |uv: DVec2| surface.point(uv).distance(vertex);
+                beside && {
+                    let distance = surface.point(uv).distance(surface.point(point.uv));
+                    distance <= 2.0 * (off(uv) + off(point.uv)) + self.context.resolution
+                }
+            });
+            match same {
+                Some(&uv) => point.uv = uv,
+                None => known.push(point.uv),
+            }
+        }
     }
 
     /// Points strictly between two chart points, as many as the metric asks for, and more where a chord

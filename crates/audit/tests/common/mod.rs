@@ -72,5 +72,6 @@ pub fn claims(report: &PartReport) -> Vec<Claim> {
 }
 
 pub fn audit(part: &Part, mesh: &PartMesh, report: &PartReport, tolerance: f64) -> PartAudit {
+    let part = report.healed.as_deref().unwrap_or(part);
     audit_part(part, mesh, &AuditOptions::new(tolerance), Some(&claims(report)))
 }

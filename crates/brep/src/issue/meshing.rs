@@ -80,6 +80,12 @@ pub enum MeshIssue {
         /// Its reason.
         reason: String,
     },
+    /// The loops of a face cross or touch; the model was given a vertex at each such place, and the face loops without
+    /// crossings.
+    LoopsUntangled {
+        /// Places where they crossed or touched.
+        crossings: usize,
+    },
     /// A fault of this program: a panic.
     InternalError {
         /// The text of the panic.
@@ -112,6 +118,7 @@ impl MeshIssue {
             MeshIssue::EdgesTooCoarse { .. } => "edges-too-coarse",
             MeshIssue::NoNurbsForm { .. } => "no-nurbs-form",
             MeshIssue::MethodFailed { .. } => "method-failed",
+            MeshIssue::LoopsUntangled { .. } => "loops-untangled",
             MeshIssue::InternalError { .. } => "internal-error",
         }
     }
@@ -166,6 +173,10 @@ impl fmt::Display for MeshIssue {
             }
             MeshIssue::NoNurbsForm { error } => write!(f, "the surface has no NURBS form: {error}"),
             MeshIssue::MethodFailed { method, reason } => write!(f, "method `{method}` failed: {reason}"),
+            MeshIssue::LoopsUntangled { crossings } => {
+                let places = count(*crossings, "place", "places");
+                write!(f, "loops cross or touch at {places}; each was given a vertex")
+            }
             MeshIssue::InternalError { message, location } => {
                 write!(f, "internal error: {message}")?;
                 if let Some(location) = location {

@@ -4,7 +4,7 @@ use super::Entry;
 use crate::names::face_kind;
 use crate::placement::PartUse;
 use crate::report::*;
-use chordal_brep::{Face, Issue, IssueKind, ResultIssue, Severity};
+use chordal_brep::{Face, Issue, IssueKind, MeshIssue, ResultIssue, Severity};
 use chordal_tessellate::FaceReport;
 
 /// Adds every face of a part. `rounding`: how far placing and writing may move a vertex, in millimetres.
@@ -45,6 +45,9 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
     };
     if let Some((severity, kind)) = issue {
         problem(severity, kind);
+    }
+    if of_face.untangled > 0 {
+        problem(Severity::Warning, MeshIssue::LoopsUntangled { crossings: of_face.untangled }.into());
     }
     if status == FaceStatus::Meshed {
         match proven_error.map(|error| error + rounding) {

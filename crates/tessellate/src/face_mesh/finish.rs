@@ -77,6 +77,7 @@ impl FaceMesh<'_, '_> {
             keys,
             triangles,
             inner,
+            crossed: false,
             quads,
             doubtful: self.chart.reversed,
             private,

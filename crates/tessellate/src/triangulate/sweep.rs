@@ -45,6 +45,15 @@ struct Sweep<'a> {
 /// outer ones run counter-clockwise, holes clockwise. Triangles come out counter-clockwise; where vertices
 /// touch an edge or each other some may have no area.
 pub fn sweep(points: &[DVec2], loops: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, SweepError> {
+    swept(points, loops).or_else(|error| {
+        // The order of vertices tells -0 from 0, the predicates do not: where a loop touches itself on such a
+        // line, that leads the sweep astray.
+        let zeros_joined: Vec<DVec2> = points.iter().map(|p| *p + DVec2::ZERO).collect();
+        swept(&zeros_joined, loops).map_err(|_| error)
+    })
+}
+
+fn swept(points: &[DVec2], loops: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, SweepError> {
     let mut next = vec![0; points.len()];
     let mut previous = vec![0; points.len()];
     for &(start, end) in loops {
@@ -305,6 +314,21 @@ mod tests {
     fn crossing_loops_are_an_error() {
         let p = [(0., 0.), (2., 2.), (2., 0.), (0., 2.)].map(DVec2::from);
         assert!(sweep(&p, &[(0, 4)]).is_err());
+    }
+
+    #[test]
+    fn zeros_of_both_signs_are_one_coordinate() {
+        let corners = [
+            (-0.0, 3.0),
+            (0.0, 1.0),
+            (1.0, 1.0),
+            (1.0, -1.0),
+            (-0.0, -1.0),
+            (0.0, -3.0),
+            (3.0, -3.0),
+            (3.0, 3.0),
+        ];
+        check(&corners.map(DVec2::from), &[(0, 8)], 16.0);
     }
 
     #[test]

@@ -1,0 +1,224 @@
+//! Where the loops of a face meet: crossings of chords, carried over to the exact curves, and vertices on other edges.
+
+use super::{Meeting, Stop};
+use crate::chart::FaceContext;
+use crate::keys::{Key, Segment};
+use crate::triangulate::orient;
+use crate::unroll::Chart;
+use chordal_brep::VertexId;
+use chordal_nurbs::{CurveInverter, DVec2, Range};
+
+/// A crossing of chords is followed to the curves by this many cuts at most: each leaves a chord of half the length or far
+/// less.
+const STEPS: usize = 48;
+
+/// Faces with more crossings than this are not mended: their loops are noise.
+const MOST_MEETINGS: usize = 5_000;
+
+/// One side of a polygon of the chart.
+#[derive(Clone, Copy)]
+struct Side {
+    from: u32,
+    to: u32,
+    ends: [DVec2; 2],
+    /// The corner before the first end.
+    before: DVec2,
+    segment: Segment,
+}
+
+fn sides(chart: &Chart) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(chart.points.len());
+    for &(start, end) in &chart.loops {
+        for from in start..end {
+            let to = if from + 1 == end { start } else { from + 1 };
+            let before = if from == start { end - 1 } else { from - 1 };
+            let [a, b] = [from, to].map(|i| chart.points[i as usize]);
+            let before = chart.points[before as usize].uv;
+            sides.push(Side { from, to, ends: [a.uv, b.uv], before, segment: a.segment });
+        }
+    }
+    sides
+}
+
+/// Pairs of sides whose boxes meet, each once.
+fn near_pairs(sides: &[Side], mut visit: impl FnMut(&Side, &Side) -> bool) {
+    let low = |s: &Side| s.ends[0].min(s.ends[1]);
+    let high = |s: &Side| s.ends[0].max(s.ends[1]);
+    let mut order: Vec<usize> = (0..sides.len()).collect();
+    order.sort_unstable_by(|&i, &j| low(&sides[i]).x.total_cmp(&low(&sides[j]).x).then(i.cmp(&j)));
+    let mut active: Vec<usize> = Vec::new();
+    for i in order {
+        let (from, to) = (low(&sides[i]), high(&sides[i]));
+        active.retain(|&j| high(&sides[j]).x >= from.x);
+        for &j in &active {
+            if low(&sides[j]).y <= to.y && high(&sides[j]).y >= from.y && !visit(&sides[i], &sides[j]) {
+                return;
+            }
+        }
+        active.push(i);
+    }
+}
+
+/// True where two segments cross between their ends.
+fn cross([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    let apart = |x: f64, y: f64| x > 0.0 && y < 0.0 || x < 0.0 && y > 0.0;
+    apart(orient(a, b, c), orient(a, b, d)) && apart(orient(c, d, a), orient(c, d, b))
+}
+
+/// True where loops of the chart cross: between corners, in a corner of one of them, or in a corner of both.
+pub(crate) fn loops_cross(chart: &Chart) -> bool {
+    let mut found = false;
+    near_pairs(&sides(chart), |s, t| {
+        found = cross(s.ends, t.ends)
+            || passes_through(s, t)
+            || passes_through(t, s)
+            || s.ends[0] == t.ends[0] && corners_cross(s, t);
+        !found
+    });
+    found
+}
+
+/// True where the first corner of a side lies on another one, and its loop goes from one side of that to the other.
+fn passes_through(own: &Side, other: &Side) -> bool {
+    let [a, b] = other.ends;
+    let p = own.ends[0];
+    let inside = (p - a).dot(b - a) > 0.0 && (p - b).dot(a - b) > 0.0;
+    inside && orient(a, b, p) == 0.0 && orient(a, b, own.before) * orient(a, b, own.ends[1]) < 0.0
+}
+
+/// True where two loops that pass one point cross there.
+fn corners_cross(s: &Side, t: &Side) -> bool {
+    let (p, from, to) = (s.ends[0], s.before, s.ends[1]);
+    // Strictly between the directions to `to` and to `from`, counter-clockwise; `None` along one of them.
+    let between = |x: DVec2| {
+        let (by_to, by_from) = (orient(p, to, x), orient(p, from, x));
+        if by_to == 0.0 || by_from == 0.0 {
+            return None;
+        }
+        let convex = orient(p, to, from) > 0.0;
+        Some(if convex { by_to > 0.0 && by_from < 0.0 } else { by_to > 0.0 || by_from < 0.0 })
+    };
+    matches!((between(t.before), between(t.ends[1])), (Some(a), Some(b)) if a != b)
+}
+
+/// All places where edges of the face meet other than in their vertices.
+pub(super) fn meetings(
+    context: &FaceContext<'_, '_>,
+    chart: &Chart,
+    resolution: f64,
+    tolerance: f64,
+) -> Vec<Meeting> {
+    let sides = sides(chart);
+    let mut found: Vec<Meeting> = Vec::new();
+    near_pairs(&sides, |s, t| {
+        if cross(s.ends, t.ends) {
+            found.extend(crossing(context, [s, t], tolerance));
+        } else {
+            found.extend(touches(context, chart, s, t, resolution));
+            found.extend(touches(context, chart, t, s, resolution));
+        }
+        found.len() <= MOST_MEETINGS
+    });
+    if found.len() > MOST_MEETINGS { Vec::new() } else { found }
+}
+
+/// A stretch of an edge, in the direction of the polygon.
+#[derive(Clone, Copy)]
+struct Stretch {
+    edge: u32,
+    t: [f64; 2],
+    uv: [DVec2; 2],
+}
+
+impl Stretch {
+    fn of(context: &FaceContext<'_, '_>, side: &Side) -> Option<Self> {
+        let Segment::Edge { edge, chord } = side.segment else { return None };
+        let samples = &context.edges[edge as usize];
+        let (k, curve) = (chord as usize, context.part.edges[edge as usize].curve.as_deref()?);
+        let t = [samples.t[k], samples.t[k + 1]];
+        // The polygon runs backwards where its first corner is the chord's second end.
+        let first = context.surface.point(side.ends[0]);
+        let backwards = first.distance(curve.point(t[1])) < first.distance(curve.point(t[0]));
+        Some(Self { edge, t: if backwards { [t[1], t[0]] } else { t }, uv: side.ends })
+    }
+
+    /// The stretch cut in two at a share of it.
+    fn cut(&self, context: &FaceContext<'_, '_>, share: f64) -> Option<[Self; 2]> {
+        let t = self.t[0] + share * (self.t[1] - self.t[0]);
+        let curve = context.part.edges[self.edge as usize].curve.as_deref()?;
+        let uv = context.surface.descend(curve.point(t), self.uv[0].lerp(self.uv[1], share));
+        let [mut a, mut b] = [*self; 2];
+        (a.t[1], a.uv[1]) = (t, uv);
+        (b.t[0], b.uv[0]) = (t, uv);
+        uv.is_finite().then_some([a, b])
+    }
+}
+
+/// Follows two chords that cross to where their curves do.
+fn crossing(context: &FaceContext<'_, '_>, pair: [&Side; 2], tolerance: f64) -> Option<Meeting> {
+    let mut at = [Stretch::of(context, pair[0])?, Stretch::of(context, pair[1])?];
+    let mut place = [0.0; 2];
+    for _ in 0..STEPS {
+        let shares = shares(at[0].uv, at[1].uv)?;
+        let cut = [at[0].cut(context, shares[0])?, at[1].cut(context, shares[1])?];
+        place = [cut[0][0].t[1], cut[1][0].t[1]];
+        let next = [[0, 0], [0, 1], [1, 0], [1, 1]]
+            .map(|[i, j]| [cut[0][i], cut[1][j]])
+            .into_iter()
+            .find(|[s, t]| cross(s.uv, t.uv));
+        // Where nothing crosses any more, both curves run through the place just found.
+        let Some(next) = next else { break };
+        at = next;
+    }
+    let stops = [0, 1].map(|k| Stop { edge: at[k].edge, t: place[k] });
+    let points = stops.map(|s| context.part.edges[s.edge as usize].curve.as_ref().map(|c| c.point(s.t)));
+    let [Some(p), Some(q)] = points else { return None };
+    let near = p.distance(q) <= tolerance;
+    near.then(|| Meeting { stops: stops.to_vec(), point: p.midpoint(q), vertex: None })
+}
+
+/// How far along each of two segments their crossing lies.
+fn shares([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<[f64; 2]> {
+    let (s, t) = (b - a, d - c);
+    let det = s.perp_dot(t);
+    let shares = [(c - a).perp_dot(t) / det, (c - a).perp_dot(s) / det];
+    shares.iter().all(|x| x.is_finite()).then(|| shares.map(|x| x.clamp(0.0, 1.0)))
+}
+
+/// The first corner of a side where it lies on another edge.
+fn touches(
+    context: &FaceContext<'_, '_>,
+    chart: &Chart,
+    own: &Side,
+    other: &Side,
+    resolution: f64,
+) -> Option<Meeting> {
+    let corner = &chart.points[own.from as usize];
+    let Segment::Edge { edge, chord } = other.segment else { return None };
+    if [other.from, other.to].iter().any(|&i| chart.points[i as usize].key == corner.key) {
+        return None;
+    }
+    let (point, own_stop, vertex) = match corner.key {
+        Key::Vertex(v) => (context.part.vertices[v as usize].point, None, Some(VertexId(v))),
+        Key::Edge(e, i) => {
+            let samples = &context.edges[e as usize];
+            (samples.points[i as usize], Some(Stop { edge: e, t: samples.t[i as usize] }), None)
+        }
+        Key::Private(_) => return None,
+    };
+    let stretch = Stretch::of(context, other)?;
+    let curve = context.part.edges[edge as usize].curve.as_deref()?;
+    let [a, b] = stretch.t.map(|t| curve.point(t));
+    let along = ((point - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    let sag = context.edges[edge as usize].sag[chord as usize];
+    if !(a.lerp(b, along).distance(point) <= resolution + 2.0 * sag) {
+        return None;
+    }
+    let range = Range::new(stretch.t[0].min(stretch.t[1]), stretch.t[0].max(stretch.t[1]));
+    let nearest = CurveInverter::new(curve, range).invert(point, None);
+    // Rather at a sample that is there than a hair beside it.
+    let sampled = stretch.t.into_iter().find(|&t| curve.point(t).distance(point) <= resolution);
+    let t = sampled.unwrap_or(nearest.t);
+    let stops = own_stop.into_iter().chain([Stop { edge, t }]).collect();
+    (nearest.distance <= resolution).then_some(Meeting { stops, point, vertex })
+}
