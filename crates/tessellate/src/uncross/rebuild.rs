@@ -145,13 +145,12 @@ fn runs(crossed: &Crossed<'_, '_>, pieces: &Pieces) -> Option<Vec<Run>> {
     Some(runs)
 }
 
+/// The piece of an edge that a stretch runs along, forwards or backwards, and the ends of the stretch; no piece for
+/// cuts through the surface.
+type Stretch = (Option<(EdgeId, bool)>, [DVec2; 2]);
+
 /// One side of a polygon, cut where its edge is: the pieces it runs along, and from where to where.
-fn stretches(
-    crossed: &Crossed<'_, '_>,
-    pieces: &Pieces,
-    a: &ChartPoint,
-    b: &ChartPoint,
-) -> Vec<(Option<(EdgeId, bool)>, [DVec2; 2])> {
+fn stretches(crossed: &Crossed<'_, '_>, pieces: &Pieces, a: &ChartPoint, b: &ChartPoint) -> Vec<Stretch> {
     let Segment::Edge { edge, chord } = a.segment else { return vec![(None, [a.uv, b.uv])] };
     let samples = &crossed.context.edges[edge as usize];
     let k = chord as usize;
