@@ -1,5 +1,5 @@
-//! Times the ways of drawing exact faces: trimmed by curves, by a texture, and lit by interpolated normals; the first frame of a
-//! model, and frames of which nothing is evaluated.
+//! Times the ways of drawing exact faces: trimmed by curves, by a texture, and lit by interpolated normals;
+//! the first frame of a model, and frames of which nothing is evaluated.
 //!
 //!     cargo run --release -p chordal-gpu --example ways -- corpus/iv/duck.iv corpus/bracket.step
 

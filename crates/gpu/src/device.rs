@@ -22,13 +22,14 @@ impl Gpu {
     /// Opens the best adapter of the kind asked for.
     ///
     /// # Errors
-    /// [`GpuError::NoDevice`] where there is none, [`GpuError::Lacks`] where it cannot compute, [`GpuError::Refused`]
-    /// where the driver refuses.
+    /// [`GpuError::NoDevice`] where there is none, [`GpuError::Lacks`] where it cannot compute,
+    /// [`GpuError::Refused`] where the driver refuses.
     pub fn open(choice: DeviceChoice) -> Result<Self, GpuError> {
         Self::open_within(choice, u64::MAX)
     }
 
-    /// As [`Self::open`], with a device that binds at most `binding` bytes at once, as if the adapter could do no more.
+    /// As [`Self::open`], with a device that binds at most `binding` bytes at once, as if the adapter could
+    /// do no more.
     ///
     /// # Errors
     /// As [`Self::open`].

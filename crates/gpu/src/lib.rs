@@ -1,8 +1,8 @@
 //! NURBS on the GPU: every surface of a model evaluated in one dispatch, trimmed per pixel, drawn.
 //!
-//! One program serves every degree from 1 to 100, rational or not, curves and surfaces. Each kernel is a WGSL file with
-//! a CPU twin of the same name; the tests hold the two against each other and against double precision, within the
-//! bounds stated at [`SurfaceEntry::point_bound`].
+//! One program serves every degree from 1 to 100, rational or not, curves and surfaces. Each kernel is a WGSL
+//! file with a CPU twin of the same name; the tests hold the two against each other and against double
+//! precision, within the bounds stated at [`SurfaceEntry::point_bound`].
 
 mod device;
 mod device_choice;

@@ -24,7 +24,8 @@ pub trait Real:
     const WGSL: &'static str;
     /// Half the distance from 1 to the next number: the largest relative error of one rounding.
     const UNIT: f64;
-    /// The squared product of two derivatives is rounding below this share of the longer one to the fourth power.
+    /// The squared product of two derivatives is rounding below this share of the longer one to the fourth
+    /// power.
     const DEGENERATE: f64;
     fn from_f64(value: f64) -> Self;
     fn to_f64(self) -> f64;

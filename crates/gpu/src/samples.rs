@@ -11,7 +11,8 @@ use chordal_nurbs::DVec2;
 pub enum Request {
     /// All pairs of these parameters; results run through v fastest.
     Grid { surface: usize, us: Vec<f64>, vs: Vec<f64> },
-    /// These points. [`Samples::new`] keeps their order; sorting them by knot span first makes memory access regular.
+    /// These points. [`Samples::new`] keeps their order; sorting them by knot span first makes memory access
+    /// regular.
     Points { surface: usize, uvs: Vec<DVec2> },
 }
 

@@ -1,11 +1,12 @@
-//! Surfaces and curves as flat arrays that every kernel reads: knots by span, control points in local coordinates.
+//! Surfaces and curves as flat arrays that every kernel reads: knots by span, control points in local
+//! coordinates.
 //!
 //! Precision rests on two changes of coordinates, both made in double precision:
-//! - Control points are taken relative to the middle of their box and divided by half its largest side, so that |x| ≤ 1
-//!   whatever the place and the size of the part; weights are divided by the largest.
-//! - The knots around a span are those of `s` made 0 and of `s + 1` made 1. Every difference of the recursion is then one of a
-//!   number ≤ 0 and one ≥ 0, so that each basis function is exact to a few roundings **relative to itself**, however short
-//!   the span and however far from zero its knots.
+//! - Control points are taken relative to the middle of their box and divided by half its largest side, so
+//!   that |x| ≤ 1 whatever the place and the size of the part; weights are divided by the largest.
+//! - The knots around a span are those of `s` made 0 and of `s + 1` made 1. Every difference of the recursion
+//!   is then one of a number ≤ 0 and one ≥ 0, so that each basis function is exact to a few roundings
+//!   **relative to itself**, however short the span and however far from zero its knots.
 //!
 //! A curve is a surface without degree along v.
 
@@ -124,8 +125,8 @@ impl<R: Real> SurfaceSet<R> {
         &self.entries
     }
 
-    /// The Bézier points (w x, w y, w z, w) of a surface in local coordinates, cell by cell, u slowest; empty without
-    /// Bézier nets and for an index out of range.
+    /// The Bézier points (w x, w y, w z, w) of a surface in local coordinates, cell by cell, u slowest; empty
+    /// without Bézier nets and for an index out of range.
     pub fn bezier_points(&self, index: usize) -> &[[R; 4]] {
         let range = self.entries.get(index).map_or(0..0, SurfaceEntry::bezier_range);
         self.bezier.get(range).unwrap_or_default()
@@ -232,7 +233,8 @@ impl<R: Real> SurfaceSet<R> {
     /// Puts a surface of the same degrees and counts in the place of surface `index`.
     ///
     /// # Errors
-    /// [`GpuError::NoSuchSurface`], or [`GpuError::OtherShape`] where a degree, a count or the number of spans differs.
+    /// [`GpuError::NoSuchSurface`], or [`GpuError::OtherShape`] where a degree, a count or the number of
+    /// spans differs.
     pub fn replace(&mut self, index: usize, surface: &NurbsSurface) -> Result<Edit, GpuError> {
         let old = self.entries.get(index).ok_or(GpuError::NoSuchSurface(index))?.clone();
         let spans = [surface.breaks_u().len(), surface.breaks_v().len()];
@@ -313,15 +315,17 @@ impl SurfaceEntry {
         self.bezier as usize..(self.bezier + self.beziers) as usize
     }
 
-    /// How far a point that a kernel finds in precision `R` may lie from the exact one **at the parameters within the span that the
-    /// kernel was given**, plus what rounding those costs; in the model's units. Positive weights.
+    /// How far a point that a kernel finds in precision `R` may lie from the exact one **at the parameters
+    /// within the span that the kernel was given**, plus what rounding those costs; in the model's units.
+    /// Positive weights.
     ///
-    /// Each basis function carries at most 4 roundings a level, each product and sum of the two loops one, the
-    /// division three; they are relative because no term is negative, and hit numerator and denominator: 2 (4 (p + q) +
-    /// p + q + 8) units. A rounded parameter moves the point by the derivative within the span, at most 2 p ρ for weights
-    /// between 1 and ρ, times half a unit; rounded knots count as much again. What comes before the kernel, in the model's
-    /// own coordinates and double precision, costs as many of its units of the surface's distance from the origin: all
-    /// that is left of a surface that is as small as those.
+    /// Each basis function carries at most 4 roundings a level, each product and sum of the two loops one,
+    /// the division three; they are relative because no term is negative, and hit numerator and denominator:
+    /// 2 (4 (p + q) + p + q + 8) units. A rounded parameter moves the point by the derivative within the
+    /// span, at most 2 p ρ for weights between 1 and ρ, times half a unit; rounded knots count as much again.
+    /// What comes before the kernel, in the model's own coordinates and double precision, costs as many of
+    /// its units of the surface's distance from the origin: all that is left of a surface that is as small as
+    /// those.
     pub fn point_bound<R: Real>(&self) -> f64 {
         let n = (self.degree[0] + self.degree[1]) as f64;
         let units = 10.0 * n + 16.0 + 4.0 * n * self.weight_ratio;

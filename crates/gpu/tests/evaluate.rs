@@ -65,8 +65,8 @@ fn double_precision_equals_the_twins_to_the_bit() {
     }
 }
 
-/// Points of kernels and twins in single precision lie within the stated bound of the exact ones, on surfaces of every
-/// degree, thousands of times their size away from the origin, with short and long spans.
+/// Points of kernels and twins in single precision lie within the stated bound of the exact ones, on surfaces
+/// of every degree, thousands of times their size away from the origin, with short and long spans.
 #[test]
 fn single_precision_keeps_its_bound() {
     if no_gpu() {
@@ -113,7 +113,8 @@ fn single_precision_keeps_its_bound() {
     }
 }
 
-/// The crate `nurbs` has passes of its own, over tables of the file's knots: twins of the paper's layouts agree with them.
+/// The crate `nurbs` has passes of its own, over tables of the file's knots: twins of the paper's layouts
+/// agree with them.
 #[test]
 fn twins_agree_with_the_passes_of_nurbs() {
     let mut random = Random(10);
@@ -154,7 +155,8 @@ fn derivatives_are_those_of_nurbs() {
         for (index, (surface, request)) in surfaces.iter().zip(&requests).enumerate() {
             let Request::Grid { us, vs, .. } = request else { unreachable!() };
             let size = set.entries()[index].frame.size;
-            // Rounding of a control point weighs by the degree over the length of the shortest span, once per order.
+            // Rounding of a control point weighs by the degree over the length of the shortest span, once per
+            // order.
             let shortest = |breaks: &[f64]| breaks.windows(2).map(|w| w[1] - w[0]).fold(1.0, f64::min);
             let span = shortest(&surface.breaks_u()).min(shortest(&surface.breaks_v()));
             let steep = surface.degree().into_iter().max().unwrap() as f64 / span;
@@ -341,7 +343,8 @@ fn large_grids_are_split_between_bindings() {
     }
 }
 
-/// A device that binds little at once: points are split, what cannot be is refused by name, nothing is cut off.
+/// A device that binds little at once: points are split, what cannot be is refused by name, nothing is cut
+/// off.
 #[test]
 fn what_exceeds_a_binding_is_split_or_refused() {
     if no_gpu() {

@@ -1,4 +1,5 @@
-//! Frames after frames of one scene: what is evaluated again, what is rejected, what an edit uploads, and what limits do.
+//! Frames after frames of one scene: what is evaluated again, what is rejected, what an edit uploads, and
+//! what limits do.
 
 mod common;
 
@@ -44,7 +45,8 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// The same view again and a little nearer needs no new samples; nearer by a lot needs those of bent faces alone.
+/// The same view again and a little nearer needs no new samples; nearer by a lot needs those of bent faces
+/// alone.
 #[test]
 fn samples_are_used_again() {
     if no_gpu() {
@@ -75,7 +77,8 @@ fn samples_are_used_again() {
     }
 }
 
-/// A flight of a hundred frames towards a model: pictures are those of a scene made for each of them, and little is on the device.
+/// A flight of a hundred frames towards a model: pictures are those of a scene made for each of them, and
+/// little is on the device.
 #[test]
 fn a_flight_shows_what_single_pictures_show() {
     if no_gpu() {
@@ -102,7 +105,8 @@ fn a_flight_shows_what_single_pictures_show() {
     assert!(evaluated < 30 * stage.faces_of(0), "{evaluated}");
 }
 
-/// Leaving out what the picture cannot show leaves the picture as it is: closed and open bodies, near and far, cut and whole.
+/// Leaving out what the picture cannot show leaves the picture as it is: closed and open bodies, near and
+/// far, cut and whole.
 #[test]
 fn rejection_is_not_seen() {
     if no_gpu() {
@@ -169,8 +173,8 @@ fn moved(surface: &NurbsSurface, phase: f64) -> NurbsSurface {
     .expect("the same counts")
 }
 
-/// Control points that change from frame to frame: only they are sent, only their face is evaluated, in place from the second frame on,
-/// and the pictures are those of a scene that had them from the start.
+/// Control points that change from frame to frame: only they are sent, only their face is evaluated, in place
+/// from the second frame on, and the pictures are those of a scene that had them from the start.
 #[test]
 fn moving_surfaces_send_and_evaluate_themselves_alone() {
     if no_gpu() {
@@ -266,7 +270,8 @@ fn far_copies_take_fewer_points() {
     assert!(both.points < counts.points * 6 / 5, "{} of {}", both.points, counts.points);
 }
 
-/// A device that binds little gets the model in several pieces and shows the same picture; where one face does not fit it says so.
+/// A device that binds little gets the model in several pieces and shows the same picture; where one face
+/// does not fit it says so.
 #[test]
 fn small_bindings_split_the_scene() {
     if no_gpu() {

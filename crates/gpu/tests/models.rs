@@ -1,7 +1,9 @@
-//! Every surface and every edge curve of the models, all of a file in one dispatch, on the device and by the twins.
+//! Every surface and every edge curve of the models, all of a file in one dispatch, on the device and by the
+//! twins.
 //!
-//! Splines are taken whole, other surfaces in their exact NURBS form over a box of their parameters.
-//! The models are no part of the repository: `CHORDAL_MODELS` names their folder (default `../shared/models` next to it).
+//! Splines are taken whole, other surfaces in their exact NURBS form over a box of their parameters. The
+//! models are no part of the repository: `CHORDAL_MODELS` names their folder (default `../shared/models` next
+//! to it).
 
 mod common;
 
@@ -74,7 +76,8 @@ fn geometry_of(model: &Model) -> Found {
     found
 }
 
-/// The requests of a file and the exact points that they ask for, surfaces first. Few a surface where there are many.
+/// The requests of a file and the exact points that they ask for, surfaces first. Few a surface where there
+/// are many.
 fn requests(set: &SurfaceSet<f32>, found: &Found) -> (Vec<Request>, Vec<DVec3>) {
     let [width, height] = if found.surfaces.len() > 400 { [3, 3] } else { [5, 6] };
     let (mut requests, mut exact) = (Vec::new(), Vec::new());

@@ -1,4 +1,5 @@
-//! Pictures of corpus models against those kept in `tests/pictures`: they may differ by a pixel's place and by rounding.
+//! Pictures of corpus models against those kept in `tests/pictures`: they may differ by a pixel's place and
+//! by rounding.
 //!
 //! `CHORDAL_UPDATE_PICTURES=1` writes them anew; look at them before they are kept.
 
@@ -83,7 +84,8 @@ fn corpus_models_look_as_they_did() {
     }
 }
 
-/// The models by which trimmed drawing is shown, by curves and by textures; close up a texture keeps to its own resolution.
+/// The models by which trimmed drawing is shown, by curves and by textures; close up a texture keeps to its
+/// own resolution.
 #[test]
 fn trimmed_surfaces_look_as_they_did() {
     if no_gpu() {
@@ -135,7 +137,8 @@ fn styles_of_the_mesh_show_it() {
     assert!(drawn(&outcome, &small().with_style(Style::Error)).difference(&shaded, THRESHOLD) > 0.1);
 }
 
-/// The model far from the origin is drawn as sharply as the same one near it would be: single precision holds offsets only.
+/// The model far from the origin is drawn as sharply as the same one near it would be: single precision holds
+/// offsets only.
 #[test]
 fn a_close_look_far_from_the_origin_keeps_its_pixels() {
     if no_gpu() {
@@ -183,7 +186,8 @@ fn transparent_pictures_have_no_dark_borders() {
     }
 }
 
-/// Of a box that is seen through, front and back cover what the opacity of both says, whatever the order of drawing.
+/// Of a box that is seen through, front and back cover what the opacity of both says, whatever the order of
+/// drawing.
 #[test]
 fn what_is_not_opaque_is_seen_through() {
     if no_gpu() {
@@ -210,7 +214,8 @@ fn what_is_not_opaque_is_seen_through() {
     }
 }
 
-/// Exact surfaces look like their mesh at a tolerance that no pixel shows, near and far, the trims close up too.
+/// Exact surfaces look like their mesh at a tolerance that no pixel shows, near and far, the trims close up
+/// too.
 #[test]
 fn exact_surfaces_look_like_a_fine_mesh() {
     if no_gpu() {
@@ -232,8 +237,9 @@ fn exact_surfaces_look_like_a_fine_mesh() {
     }
 }
 
-/// With a mesh that departs by a hundred-thousandth of the model at most, the silhouettes of both modes are within a pixel of each
-/// other, without exception: every pixel that one shows is next to one that the other shows.
+/// With a mesh that departs by a hundred-thousandth of the model at most, the silhouettes of both modes are
+/// within a pixel of each other, without exception: every pixel that one shows is next to one that the other
+/// shows.
 #[test]
 fn silhouettes_are_those_of_a_mesh_at_1e_5() {
     if no_gpu() {
@@ -284,7 +290,8 @@ fn beyond_a_pixel(a: &Picture, b: &Picture) -> usize {
     (0..h).map(|y| (0..w).filter(|&x| alone(x, y)).count()).sum()
 }
 
-/// Both ways of trimming look alike where texels are finer than pixels, and like a fine mesh: deep notches, holes with islands, windows.
+/// Both ways of trimming look alike where texels are finer than pixels, and like a fine mesh: deep notches,
+/// holes with islands, windows.
 #[test]
 fn both_trims_look_alike() {
     if no_gpu() {
@@ -313,8 +320,8 @@ fn both_trims_look_alike() {
     }
 }
 
-/// Seen through no crack: inside the silhouette of a solid no sample shows the background, at any zoom, however coarse the mesh
-/// that the loops were taken from.
+/// Seen through no crack: inside the silhouette of a solid no sample shows the background, at any zoom,
+/// however coarse the mesh that the loops were taken from.
 #[test]
 fn neighbours_show_no_crack() {
     if no_gpu() {

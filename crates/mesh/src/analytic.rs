@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-/// An elementary surface under a face, in its part's coordinates; angles in radians, extents those of the face.
+/// An elementary surface under a face, in its part's coordinates; angles in radians, extents those of the
+/// face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnalyticFace {
     /// A plane.

@@ -1,4 +1,5 @@
-//! Mesh buffers that remember where every vertex came from, and the scene of placed meshes that writers write.
+//! Mesh buffers that remember where every vertex came from, and the scene of placed meshes that writers
+//! write.
 
 #![deny(missing_docs)]
 

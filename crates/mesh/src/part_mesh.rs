@@ -23,7 +23,8 @@ pub enum Origin {
 pub struct Corner {
     /// Index into [`PartMesh::positions`].
     pub position: u32,
-    /// Where it lies in the parameter space of the face; corners on a seam or pole share a position, not their uv.
+    /// Where it lies in the parameter space of the face; corners on a seam or pole share a position, not
+    /// their uv.
     pub uv: DVec2,
     /// The exact unit normal of the face there, pointing out of the material.
     pub normal: DVec3,
@@ -38,14 +39,15 @@ pub struct FaceMesh {
     pub corners: Vec<Corner>,
     /// Indices into `corners`, counter-clockwise seen from outside the material.
     pub triangles: Vec<[u32; 3]>,
-    /// The first `2 · quads` triangles are the halves of quadrilaterals, two by two; formats that have quadrilaterals
-    /// keep them.
+    /// The first `2 · quads` triangles are the halves of quadrilaterals, two by two; formats that have
+    /// quadrilaterals keep them.
     pub quads: u32,
 }
 
 impl FaceMesh {
-    /// The corners of the quadrilateral that two triangles form along the edge that they share, in the sense of both; each as
-    /// (which triangle, which corner of it). The first corner is an end of that edge: a fan around it is the two triangles.
+    /// The corners of the quadrilateral that two triangles form along the edge that they share, in the sense
+    /// of both; each as (which triangle, which corner of it). The first corner is an end of that edge: a fan
+    /// around it is the two triangles.
     pub fn quad_of(first: [u32; 3], second: [u32; 3]) -> Option<[(usize, usize); 4]> {
         (0..3).find_map(|i| {
             let (a, b) = (first[(i + 1) % 3], first[(i + 2) % 3]);

@@ -1,4 +1,5 @@
-//! What writers need: meshes with names and colours, placed by a tree. Lengths are millimetres after the root.
+//! What writers need: meshes with names and colours, placed by a tree. Lengths are millimetres after the
+//! root.
 
 use crate::{AnalyticFace, PartMesh};
 use glam::{DAffine3, DVec3};

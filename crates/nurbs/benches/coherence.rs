@@ -18,7 +18,8 @@ fn surface(p: usize, q: usize, rational: bool) -> NurbsSurface {
     NurbsSurface::new([p, q], knots(p), knots(q), (0..count).map(point).collect(), weights).expect("legal")
 }
 
-/// Corners of a binary subdivision, coordinates shared as in a tessellation: the finer the nearer to a corner.
+/// Corners of a binary subdivision, coordinates shared as in a tessellation: the finer the nearer to a
+/// corner.
 fn tree_corners(depth: u32) -> Vec<DVec2> {
     let mut corners = Vec::new();
     let mut stack = vec![(DVec2::ZERO, DVec2::ONE, 0)];

@@ -1,8 +1,9 @@
 //! Knot vectors and B-spline basis functions.
 //!
-//! Source: Cox and de Boor's recursion, derivatives by differencing one level down (Piegl and Tiller, *The NURBS
-//! Book*, chapter 2). Notation: `p` degree, `s` the span with `knots[s] <= t < knots[s+1]`; the functions that do not
-//! vanish on it are `s-p..=s`. Only non-empty spans are ever evaluated, so no denominator is zero.
+//! Source: Cox and de Boor's recursion, derivatives by differencing one level down (Piegl and Tiller, *The
+//! NURBS Book*, chapter 2). Notation: `p` degree, `s` the span with `knots[s] <= t < knots[s+1]`; the
+//! functions that do not vanish on it are `s-p..=s`. Only non-empty spans are ever evaluated, so no
+//! denominator is zero.
 
 use crate::{NurbsError, Range};
 
@@ -155,9 +156,9 @@ impl<const R: usize> Basis<R> {
 
 /// Fills row `k` with derivative `k`; `window` holds the `2 degree` knots around the span.
 ///
-/// Row 0 climbs from level 0 to level `degree`. Row `k` starts as a copy of row 0 at level `degree - k` and climbs the
-/// rest by differencing. The two blending factors are `a` and `1 - a` with `a` a true quotient, so that the functions
-/// are exactly 0 and 1 at a clamped end and never negative.
+/// Row 0 climbs from level 0 to level `degree`. Row `k` starts as a copy of row 0 at level `degree - k` and
+/// climbs the rest by differencing. The two blending factors are `a` and `1 - a` with `a` a true quotient, so
+/// that the functions are exactly 0 and 1 at a clamped end and never negative.
 #[inline]
 fn fill<const R: usize>(degree: usize, window: &[f64], t: f64, mut rows: [&mut [f64]; R]) {
     rows[0][0] = 1.0;

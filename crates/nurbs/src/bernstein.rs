@@ -1,7 +1,7 @@
 //! Arithmetic of polynomials in Bernstein form.
 //!
-//! A *scaled* coefficient is a Bernstein coefficient times its binomial: products are then plain convolutions, and
-//! since all factors are positive no digits are lost by the scaling.
+//! A *scaled* coefficient is a Bernstein coefficient times its binomial: products are then plain
+//! convolutions, and since all factors are positive no digits are lost by the scaling.
 
 use crate::Vector;
 

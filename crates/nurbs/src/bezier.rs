@@ -5,7 +5,8 @@ use crate::homogeneous::{self, Homogeneous, project_jet};
 use crate::{NurbsError, Range, UvBox, Vector, blossom};
 use glam::DVec2;
 
-/// A Bézier curve over 0..=1; rational where it has weights. `points` are projected (not multiplied by weights).
+/// A Bézier curve over 0..=1; rational where it has weights. `points` are projected (not multiplied by
+/// weights).
 #[derive(Clone, Debug, PartialEq)]
 pub struct BezierCurve<V> {
     /// The control points, projected (not multiplied by weights); one more than the degree.
@@ -111,7 +112,8 @@ impl<V: Vector> BezierCurve<V> {
     /// The same curve as a B-spline over `range`.
     ///
     /// # Errors
-    /// Any [`NurbsError`] that names what does not fit: an empty range, a degree out of bounds, a zero weight.
+    /// Any [`NurbsError`] that names what does not fit: an empty range, a degree out of bounds, a zero
+    /// weight.
     pub fn to_nurbs(&self, range: Range) -> Result<crate::NurbsCurve<V>, NurbsError> {
         let n = self.points.len();
         let knots = (0..2 * n).map(|i| if i < n { range.start } else { range.end }).collect();

@@ -1,7 +1,7 @@
 //! Roots by bisection.
 
-/// A sign change of `f` between `a` and `b`, where f has different signs (zero counts as positive), after so many
-/// `halvings` of the interval; about 60 reach the last bits.
+/// A sign change of `f` between `a` and `b`, where f has different signs (zero counts as positive), after so
+/// many `halvings` of the interval; about 60 reach the last bits.
 pub fn bisect(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64, halvings: u32) -> f64 {
     let negative = f(a) < 0.0;
     for _ in 0..halvings {

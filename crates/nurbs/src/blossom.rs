@@ -1,8 +1,10 @@
-//! In-place algorithms on one row of control points: restriction, splitting, knot insertion, degree elevation.
+//! In-place algorithms on one row of control points: restriction, splitting, knot insertion, degree
+//! elevation.
 //!
-//! Source: blossoming (Ramshaw). Notation: `f` is the polar form of a polynomial piece of degree `p`; control point
-//! `j` of the span is `f(k[j], …, k[j+p-1])` with `k` the `2p` knots around it, and Bézier point `i` over `a..b` is
-//! `f(a × (p-i), b × i)`. All blends are `x(1-α) + yα`, exact at α = 0 and 1, so shared ends stay bitwise equal.
+//! Source: blossoming (Ramshaw). Notation: `f` is the polar form of a polynomial piece of degree `p`; control
+//! point `j` of the span is `f(k[j], …, k[j+p-1])` with `k` the `2p` knots around it, and Bézier point `i`
+//! over `a..b` is `f(a × (p-i), b × i)`. All blends are `x(1-α) + yα`, exact at α = 0 and 1, so shared ends
+//! stay bitwise equal.
 
 use crate::Vector;
 
@@ -13,8 +15,8 @@ fn blend<T: Vector>(x: T, y: T, alpha: f64) -> T {
 
 /// Replaces the `p + 1` control points of a span by the Bézier points over `a..b`, `a <= b`.
 ///
-/// `knots` are the `2p` around the span. First triangle: the knots below the span become `a`; second triangle: those
-/// above become `b`.
+/// `knots` are the `2p` around the span. First triangle: the knots below the span become `a`; second
+/// triangle: those above become `b`.
 pub(crate) fn span_to_bezier<T: Vector>(row: &mut [T], knots: &[f64], a: f64, b: f64) {
     let p = row.len() - 1;
     for r in 1..=p {
@@ -99,7 +101,8 @@ pub(crate) fn insert_knot<T: Vector>(degree: usize, knots: &mut Vec<f64>, row: &
     knots.insert(k + 1, t);
 }
 
-/// Inserts `t` until its multiplicity is `degree`, then drops all that lies before it; the result is clamped at `t`.
+/// Inserts `t` until its multiplicity is `degree`, then drops all that lies before it; the result is clamped
+/// at `t`.
 pub(crate) fn clamp_start<T: Vector>(degree: usize, knots: &mut Vec<f64>, row: &mut Vec<T>, t: f64) {
     while knots.iter().filter(|&&k| k == t).count() < degree {
         insert_knot(degree, knots, row, t);

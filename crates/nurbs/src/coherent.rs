@@ -1,6 +1,7 @@
 //! Points of a spline surface one after the other, with what the last one left behind.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 8. Notation: `S = Σ_i B_i(u) Σ_j B_j(v) P_ij`; the inner sums are the *row sums*.
+//! Source: Balázs, Guthe, Klein 2004, section 8. Notation: `S = Σ_i B_i(u) Σ_j B_j(v) P_ij`; the inner sums
+//! are the *row sums*.
 //!
 //! | since the last point | computed anew | cost, degrees p and q |
 //! |---|---|---|
@@ -9,9 +10,9 @@
 //! | same u | basis in v, row sums | q² + pq |
 //! | neither | both | p² + q² + pq |
 //!
-//! Points are asked for in the order of v, then u; as p² is what remains, u and v are swapped where p is the larger degree
-//! ([`CoherentEvaluator::order`] sorts accordingly). Results are those of [`NurbsSurface::point`] to rounding: sums are taken in
-//! another order.
+//! Points are asked for in the order of v, then u; as p² is what remains, u and v are swapped where p is the
+//! larger degree ([`CoherentEvaluator::order`] sorts accordingly). Results are those of
+//! [`NurbsSurface::point`] to rounding: sums are taken in another order.
 
 use crate::NurbsSurface;
 use crate::basis::Basis;

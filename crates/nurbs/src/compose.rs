@@ -1,10 +1,10 @@
 //! The exact curve that a Bézier patch makes of a Bézier curve in its parameter space.
 //!
-//! Source: DeRose et al., *Functional composition algorithms via blossoming*; here de Casteljau's algorithm with
-//! polynomials in place of numbers. Notation: the curve is `(X, Y)/W`, the patch `Σ B_i(u) B_j(v) P_ij` in homogeneous
-//! coordinates. A blend of the net at `u = X/W`, cleared of the denominator, is `(W − X)·a + X·b`; `du` such blends
-//! along u and `dv` along v leave one polynomial of degree `d·(du + dv)`. Products are taken on scaled Bernstein
-//! coefficients, so that they are convolutions.
+//! Source: DeRose et al., *Functional composition algorithms via blossoming*; here de Casteljau's algorithm
+//! with polynomials in place of numbers. Notation: the curve is `(X, Y)/W`, the patch `Σ B_i(u) B_j(v) P_ij`
+//! in homogeneous coordinates. A blend of the net at `u = X/W`, cleared of the denominator, is `(W − X)·a +
+//! X·b`; `du` such blends along u and `dv` along v leave one polynomial of degree `d·(du + dv)`. Products are
+//! taken on scaled Bernstein coefficients, so that they are convolutions.
 
 use crate::bernstein::{MAX_SCALED_DEGREE, product, scaled, unscaled};
 use crate::homogeneous::Homogeneous;

@@ -18,8 +18,8 @@ pub(crate) use transform::similarity;
 pub(crate) const CLOSED: f64 = 1e-7;
 
 impl Curve {
-    /// The point at `t`. Closed free-form curves go round; others are evaluated at the nearer end of the domain
-    /// or go on beyond it.
+    /// The point at `t`. Closed free-form curves go round; others are evaluated at the nearer end of the
+    /// domain or go on beyond it.
     pub fn point(&self, t: f64) -> DVec3 {
         match self {
             Curve::Line { origin, direction } => *origin + *direction * t,

@@ -29,7 +29,8 @@ impl Curve2 {
         Curve2Jet { p, d1, d2 }
     }
 
-    /// The point at `t` with the first three derivatives; the third one of offset curves is a central difference.
+    /// The point at `t` with the first three derivatives; the third one of offset curves is a central
+    /// difference.
     pub fn jet3(&self, t: f64) -> Jet3<DVec2> {
         match self {
             Curve2::Line { origin, direction } => conic::line(*origin, *direction, t),
@@ -128,9 +129,9 @@ impl Curve2 {
         all
     }
 
-    /// The curve with both coordinates multiplied, each point keeping its parameter: units of lengths and angles
-    /// converted. `None` where the kind cannot say it (an offset or a slanted conic scaled unevenly); convert with
-    /// [`Curve2::to_nurbs`] first.
+    /// The curve with both coordinates multiplied, each point keeping its parameter: units of lengths and
+    /// angles converted. `None` where the kind cannot say it (an offset or a slanted conic scaled unevenly);
+    /// convert with [`Curve2::to_nurbs`] first.
     pub fn scaled(&self, by: DVec2) -> Option<Curve2> {
         Some(match self {
             Curve2::Line { origin, direction } => {

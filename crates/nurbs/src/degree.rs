@@ -1,16 +1,16 @@
 //! Degree reduction of Bézier curves with a proven error.
 //!
-//! Source: Farin; the two recursions of the papers, each used where it is stable. From the left
-//! `P→_i = (n P_i − i P→_{i−1}) / (n − i)` loses a factor i/(n−i) a step once i > n/2, from the right it is the other
-//! way round; so the left half comes from the left, the right half from the right, and where they meet the mean.
-//! The end points are kept exactly.
+//! Source: Farin; the two recursions of the papers, each used where it is stable. From the left `P→_i = (n
+//! P_i − i P→_{i−1}) / (n − i)` loses a factor i/(n−i) a step once i > n/2, from the right it is the other
+//! way round; so the left half comes from the left, the right half from the right, and where they meet the
+//! mean. The end points are kept exactly.
 //!
-//! Repeated, even that amplifies noise some tenfold a degree. Reduction by many degrees therefore takes least-squares
-//! steps between the kept ends (a tridiagonal system), which throw the noise out again.
+//! Repeated, even that amplifies noise some tenfold a degree. Reduction by many degrees therefore takes
+//! least-squares steps between the kept ends (a tridiagonal system), which throw the noise out again.
 //!
-//! Error: the reduced curve, elevated back to the old degree, has control points `Q`; by the hull property the two
-//! curves differ by at most `max ‖P_i − Q_i‖`. Rational curves do so in homogeneous coordinates, where with `N/W` the
-//! old and `M/Z` the new curve `N/W − M/Z = ((N − M) − (M/Z)(W − Z)) / W`.
+//! Error: the reduced curve, elevated back to the old degree, has control points `Q`; by the hull property
+//! the two curves differ by at most `max ‖P_i − Q_i‖`. Rational curves do so in homogeneous coordinates,
+//! where with `N/W` the old and `M/Z` the new curve `N/W − M/Z = ((N − M) − (M/Z)(W − Z)) / W`.
 
 use crate::homogeneous::Homogeneous;
 use crate::vector::largest;
@@ -24,7 +24,8 @@ impl<V: Vector> BezierCurve<V> {
         reduced(self)
     }
 
-    /// As many degrees lower (but not below 1) as keep the proven distance within `budget`, and that distance.
+    /// As many degrees lower (but not below 1) as keep the proven distance within `budget`, and that
+    /// distance.
     pub fn reduced_within(&self, budget: f64) -> (Self, f64) {
         reduced_within(self, budget)
     }
@@ -138,8 +139,8 @@ fn reduce_net<T: Vector>(net: &[T]) -> Vec<T> {
         .collect()
 }
 
-/// Bounds the distance at equal parameters of a curve and a lower net, both relative to the curve's first point;
-/// rounding included.
+/// Bounds the distance at equal parameters of a curve and a lower net, both relative to the curve's first
+/// point; rounding included.
 fn distance_bound<V: Vector>(
     curve: &BezierCurve<V>,
     net: &[Homogeneous<V>],

@@ -1,9 +1,10 @@
 //! Where a planar Bézier curve meets a straight line, by the explicit form.
 //!
-//! Source: Kahlesz, Balázs, Klein 2001, section 5. The signed distances of the control points from the line, times their weights, are
-//! the coefficients of a polynomial over the curve's own parameter that is zero exactly where the curve meets the line. It is halved
-//! until its coefficients are all on one side, or the piece is as small as rounding: there is a hit. As the curve lies in the convex hull of
-//! its coefficients, no root is missed, those of even order (where curve and line only touch) included.
+//! Source: Kahlesz, Balázs, Klein 2001, section 5. The signed distances of the control points from the line,
+//! times their weights, are the coefficients of a polynomial over the curve's own parameter that is zero
+//! exactly where the curve meets the line. It is halved until its coefficients are all on one side, or the
+//! piece is as small as rounding: there is a hit. As the curve lies in the convex hull of its coefficients,
+//! no root is missed, those of even order (where curve and line only touch) included.
 
 use crate::{BezierCurve, blossom};
 use glam::DVec2;
@@ -21,8 +22,8 @@ pub enum LineCrossings {
 const DEEPEST: u32 = 44;
 
 impl BezierCurve<DVec2> {
-    /// Every parameter from 0 to 1 at which the curve meets the line through `origin` along `direction`. Points nearer to the
-    /// line than `zero` are on it.
+    /// Every parameter from 0 to 1 at which the curve meets the line through `origin` along `direction`.
+    /// Points nearer to the line than `zero` are on it.
     pub fn line_crossings(&self, origin: DVec2, direction: DVec2, zero: f64) -> LineCrossings {
         let normal = direction.normalize_or_zero().perp();
         let weight = |i: usize| self.weights.as_ref().map_or(1.0, |w| w[i]);
@@ -37,7 +38,8 @@ impl BezierCurve<DVec2> {
     }
 }
 
-/// The middles of all intervals in which the polynomial with these Bernstein coefficients cannot be told from zero.
+/// The middles of all intervals in which the polynomial with these Bernstein coefficients cannot be told from
+/// zero.
 fn zeros(coefficients: &[f64], zero: f64) -> Vec<f64> {
     let mut hits: Vec<(f64, f64)> = Vec::new();
     let mut stack = vec![(coefficients.to_vec(), 0.0f64, 0u32)];
@@ -109,7 +111,8 @@ mod tests {
 
     #[test]
     fn an_oscillating_curve_has_as_many_roots_as_its_degree() {
-        // Tₙ(2t − 1) in Bernstein form: b_i = (−1)^(n−i)·C(2n, 2i)/C(n, i); its zeros are (1 + cos((2k+1)π/2n))/2.
+        // Tₙ(2t − 1) in Bernstein form: b_i = (−1)^(n−i)·C(2n, 2i)/C(n, i); its zeros are (1 +
+        // cos((2k+1)π/2n))/2.
         let n = 8usize;
         let binomial = |n: usize, k: usize| (0..k).fold(1.0, |b, j| b * (n - j) as f64 / (j + 1) as f64);
         let value = |i: usize| if (n - i).is_multiple_of(2) { 1.0 } else { -1.0 } * binomial(2 * n, 2 * i) / binomial(n, i);

@@ -1,8 +1,8 @@
-//! The kinds of curves and surfaces, as data. What they can do is in `curve.rs`, `curve2.rs` and `surface.rs`, and in the
-//! files of each task (conversion, inversion, proof).
+//! The kinds of curves and surfaces, as data. What they can do is in `curve.rs`, `curve2.rs` and
+//! `surface.rs`, and in the files of each task (conversion, inversion, proof).
 //!
-//! They are defined together because they hold each other: a swept surface has a profile curve, a curve may be given in
-//! the parameters of a surface.
+//! They are defined together because they hold each other: a swept surface has a profile curve, a curve may
+//! be given in the parameters of a surface.
 
 use crate::{Frame, Frame2, NurbsCurve2, NurbsCurve3, NurbsSurface};
 use glam::{DVec2, DVec3};
@@ -145,6 +145,20 @@ pub enum Curve2 {
 }
 
 /// A surface. Parameters are those of ISO 10303-42; see each variant.
+///
+/// ```
+/// use chordal_nurbs::{DVec2, DVec3, Frame, Surface, UvBox};
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// let ball = Surface::Sphere { frame: Frame::WORLD, radius: 2.0 };
+/// let equator = DVec2::new(FRAC_PI_2, 0.0);
+/// assert!(ball.point(equator).distance(DVec3::new(0.0, 2.0, 0.0)) < 1e-15);
+/// assert_eq!(ball.normal(DVec2::ZERO), Some(DVec3::X));
+/// // Its exact NURBS form over a quarter of it.
+/// let quarter = ball.to_nurbs(UvBox::new(DVec2::ZERO, DVec2::splat(FRAC_PI_2)))?;
+/// assert_eq!(quarter.degree(), [2, 2]);
+/// # Ok::<(), chordal_nurbs::NurbsError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Surface {
@@ -176,8 +190,8 @@ pub enum Surface {
         /// The radius.
         radius: f64,
     },
-    /// `origin + (R + r cos v)(cos u x + sin u y) + r sin v z`. Where |R| < r the torus meets its axis, and the surface
-    /// is the part with R + r cos v ≥ 0: an apple for R > 0, a lemon for R < 0.
+    /// `origin + (R + r cos v)(cos u x + sin u y) + r sin v z`. Where |R| < r the torus meets its axis, and
+    /// the surface is the part with R + r cos v ≥ 0: an apple for R > 0, a lemon for R < 0.
     Torus {
         /// The centre; z is the axis; u is measured from x.
         frame: Frame,

@@ -1,4 +1,5 @@
-//! Homogeneous coordinates: what makes every polynomial algorithm serve rational curves and surfaces unchanged.
+//! Homogeneous coordinates: what makes every polynomial algorithm serve rational curves and surfaces
+//! unchanged.
 
 use crate::Vector;
 use std::ops::{Add, AddAssign, Mul, Sub};

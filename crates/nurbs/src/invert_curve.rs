@@ -1,10 +1,11 @@
 //! The parameter of a curve's point closest to a given point.
 //!
-//! Lines and circles have closed forms. Everything else minimises the squared length of a residual r(t) = c(t) − p by
-//! Newton's method, f = r·r', f' = r'·r' + r·r'', with Gauss–Newton steps where f' is small and halving where the
-//! distance would grow, from samples of each smooth piece. The same solver serves profiles of swept surfaces, whose
-//! residual is measured across the sweep. Not guaranteed: that the samples (more than the degree on each smooth piece)
-//! see a valley between two of them that is narrower than their spacing.
+//! Lines and circles have closed forms. Everything else minimises the squared length of a residual r(t) =
+//! c(t) − p by Newton's method, f = r·r', f' = r'·r' + r·r'', with Gauss–Newton steps where f' is small and
+//! halving where the distance would grow, from samples of each smooth piece. The same solver serves profiles
+//! of swept surfaces, whose residual is measured across the sweep. Not guaranteed: that the samples (more
+//! than the degree on each smooth piece) see a valley between two of them that is narrower than their
+//! spacing.
 
 use crate::conic::{unwrapped, wrapped};
 use crate::{Curve, Range};
@@ -31,24 +32,24 @@ pub struct CurveInverter<'a> {
 }
 
 impl Curve {
-    /// The parameter of the closest point; among the turns of a closed curve the one nearest to `near`, or else in the
-    /// domain. For many points of one curve use a [`CurveInverter`].
+    /// The parameter of the closest point; among the turns of a closed curve the one nearest to `near`, or
+    /// else in the domain. For many points of one curve use a [`CurveInverter`].
     pub fn invert(&self, p_xyz: DVec3, near: Option<f64>) -> f64 {
         CurveInverter::new(self, self.domain()).invert(p_xyz, near).t
     }
 }
 
 impl<'a> CurveInverter<'a> {
-    /// Prepares inversions onto `curve` over `range`: the closest point is looked for inside it, or anywhere on a
-    /// closed curve when the range covers it all.
+    /// Prepares inversions onto `curve` over `range`: the closest point is looked for inside it, or anywhere
+    /// on a closed curve when the range covers it all.
     pub fn new(curve: &'a Curve, range: Range) -> Self {
         // Rounding must not cut a full turn open.
         let period = curve.period().filter(|p| range.length() >= p * (1.0 - 1e-9));
         Self { curve, range, period, seeds: OnceLock::new() }
     }
 
-    /// The closest point. With `near`, a close one in its valley is preferred, and a closed curve is run through to the
-    /// turn nearest to it.
+    /// The closest point. With `near`, a close one in its valley is preferred, and a closed curve is run
+    /// through to the turn nearest to it.
     pub fn invert(&self, p_xyz: DVec3, near: Option<f64>) -> CurveInversion {
         let t = match self.curve {
             Curve::Line { origin, direction } => {
@@ -197,8 +198,8 @@ impl Seeds {
         Self { samples, stops, spacing, near_enough: NEAR_ENOUGH * spacing * width }
     }
 
-    /// The minimum of the residual's length. `of` gives the residual of a sample, `residual` that of a parameter with
-    /// two derivatives.
+    /// The minimum of the residual's length. `of` gives the residual of a sample, `residual` that of a
+    /// parameter with two derivatives.
     pub fn closest(
         &self,
         of: impl Fn(DVec3) -> DVec3,
@@ -311,8 +312,8 @@ pub(crate) fn descend(residual: impl Fn(f64) -> [DVec3; 3], start: f64, range: R
             break;
         }
     }
-    // Near the foot of a point off the curve the distance itself hardly changes, so that the descent ends with half of
-    // the digits: one more Newton step.
+    // Near the foot of a point off the curve the distance itself hardly changes, so that the descent ends
+    // with half of the digits: one more Newton step.
     let distance = r.length();
     let slope = r1.length_squared() + r.dot(r2);
     let step = -r.dot(r1) / slope;

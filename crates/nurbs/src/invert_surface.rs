@@ -23,6 +23,15 @@ pub struct Inversion {
 }
 
 /// A surface prepared for many inversions.
+///
+/// ```
+/// use chordal_nurbs::{DVec2, DVec3, Frame, Surface, SurfaceInverter, UvBox};
+///
+/// let plane = Surface::Plane { frame: Frame::WORLD };
+/// let inverter = SurfaceInverter::new(&plane, UvBox::new(DVec2::ZERO, DVec2::ONE));
+/// let found = inverter.invert(DVec3::new(0.25, 0.5, 3.0), None);
+/// assert_eq!((found.uv, found.distance), (DVec2::new(0.25, 0.5), 3.0));
+/// ```
 #[derive(Clone, Debug)]
 pub struct SurfaceInverter<'a> {
     surface: &'a Surface,
@@ -51,18 +60,18 @@ enum Method<'a> {
 }
 
 impl Surface {
-    /// The parameters of the closest point; closed directions are unrolled to within half a period of `near`, or else
-    /// lie in the domain. On an axis or pole the angle is that of `near`, or zero.
-    /// For many points of one surface use a [`SurfaceInverter`].
+    /// The parameters of the closest point; closed directions are unrolled to within half a period of `near`,
+    /// or else lie in the domain. On an axis or pole the angle is that of `near`, or zero. For many points of
+    /// one surface use a [`SurfaceInverter`].
     pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> DVec2 {
         SurfaceInverter::new(self, self.domain()).invert(p_xyz, near).uv
     }
 }
 
 impl<'a> SurfaceInverter<'a> {
-    /// Prepares inversions. `uv` says where the caller is at work: free-form surfaces are sampled there, and closed
-    /// directions without a hint are placed in the turn that starts at its lower end. Closest points are found outside
-    /// it too as long as they are in the surface's domain.
+    /// Prepares inversions. `uv` says where the caller is at work: free-form surfaces are sampled there, and
+    /// closed directions without a hint are placed in the turn that starts at its lower end. Closest points
+    /// are found outside it too as long as they are in the surface's domain.
     pub fn new(surface: &'a Surface, uv: UvBox) -> Self {
         let domain = surface.domain();
         let periods = surface.periods();
@@ -94,14 +103,14 @@ impl<'a> SurfaceInverter<'a> {
         self.surface
     }
 
-    /// The closest point. With `near`, a close one in its valley is preferred, and closed directions are unrolled to
-    /// within half a period of it.
+    /// The closest point. With `near`, a close one in its valley is preferred, and closed directions are
+    /// unrolled to within half a period of it.
     pub fn invert(&self, p_xyz: DVec3, near: Option<DVec2>) -> Inversion {
         self.invert_within(p_xyz, near, 0.0)
     }
 
-    /// As [`Self::invert`], where a point of the valley of `near` will do that is no farther away than `enough`: for points
-    /// that are known to lie off the surface, which would be searched for all over it.
+    /// As [`Self::invert`], where a point of the valley of `near` will do that is no farther away than
+    /// `enough`: for points that are known to lie off the surface, which would be searched for all over it.
     pub fn invert_within(&self, p_xyz: DVec3, near: Option<DVec2>, enough: f64) -> Inversion {
         let uv = match &self.method {
             Method::Elementary => elementary::invert(self.surface, p_xyz, near),
@@ -134,8 +143,8 @@ impl<'a> SurfaceInverter<'a> {
     }
 }
 
-/// Normals of an offset are those of its basis, so that a foot on the basis is one on the offset; which of several is
-/// closest may differ.
+/// Normals of an offset are those of its basis, so that a foot on the basis is one on the offset; which of
+/// several is closest may differ.
 fn invert_offset(
     terrain: &Terrain<'_>,
     basis_terrain: &Terrain<'_>,

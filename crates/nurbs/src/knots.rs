@@ -6,10 +6,12 @@ use crate::{
 };
 
 impl<V: Vector> NurbsCurve<V> {
-    /// The same curve with the interior knot `t` up to `times` more often, but not more than `degree` times in all.
+    /// The same curve with the interior knot `t` up to `times` more often, but not more than `degree` times
+    /// in all.
     ///
     /// # Errors
-    /// [`NurbsError::Weight`] or [`NurbsError::NotFinite`] where weights of both signs make a new weight vanish.
+    /// [`NurbsError::Weight`] or [`NurbsError::NotFinite`] where weights of both signs make a new weight
+    /// vanish.
     pub fn insert_knot(&self, t: f64, times: usize) -> Result<Self, NurbsError> {
         self.refine(&vec![t; times])
     }
@@ -109,7 +111,8 @@ impl<V: Vector> NurbsCurve<V> {
 }
 
 impl NurbsSurface {
-    /// The polynomial pieces whose spans overlap `within`, u outer and v inner, each with the whole box of its span.
+    /// The polynomial pieces whose spans overlap `within`, u outer and v inner, each with the whole box of
+    /// its span.
     pub fn bezier_patches(&self, within: UvBox) -> Vec<(UvBox, BezierPatch)> {
         let domain = self.domain();
         let [p, q] = self.degree();
@@ -203,7 +206,8 @@ impl NurbsSurface {
         Ok((below.swapped(), above.swapped()))
     }
 
-    /// The same surface with the interior knot `t` in v up to `times` more often, at most `degree` times in all.
+    /// The same surface with the interior knot `t` in v up to `times` more often, at most `degree` times in
+    /// all.
     ///
     /// # Errors
     /// As [`Self::piece`].
@@ -219,7 +223,8 @@ impl NurbsSurface {
         })
     }
 
-    /// The same surface with the interior knot `t` in u up to `times` more often, at most `degree` times in all.
+    /// The same surface with the interior knot `t` in u up to `times` more often, at most `degree` times in
+    /// all.
     ///
     /// # Errors
     /// As [`Self::piece`].

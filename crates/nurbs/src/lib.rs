@@ -7,6 +7,21 @@
 //!   along its **axis**, an extrusion is `c(u) + v·d`, a revolution turns `c(v)` by the angle `u`.
 //! - `_uv` names a point of parameter space, `_xyz` one of model space.
 
+//!
+//! ```
+//! use chordal_nurbs::{DVec2, Facet, Frame, Surface, SurfaceBounds, UvBox, facet_bound};
+//!
+//! // A facet over a tenth of a radian of a cylinder with a radius of 10.
+//! let cylinder = Surface::Cylinder { frame: Frame::WORLD, radius: 10.0 };
+//! let uv = [DVec2::ZERO, DVec2::new(0.1, 0.0), DVec2::new(0.0, 5.0)];
+//! let facet = Facet { uv, xyz: uv.map(|p| cylinder.point(p)), sag: [None; 3] };
+//! let bounds = SurfaceBounds::new(&cylinder, UvBox::from_points(uv), 0.01);
+//! let proven = facet_bound(&bounds, &facet, 0.01, &mut Vec::new()).error;
+//! // The arc's height over its chord is 10 (1 − cos 0.05).
+//! let height = 10.0 * (1.0 - 0.05_f64.cos());
+//! assert!(proven >= height && proven < 1.01 * height);
+//! ```
+
 #![deny(missing_docs)]
 
 pub use glam::{DAffine3, DVec2, DVec3, DVec4};

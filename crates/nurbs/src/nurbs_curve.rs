@@ -7,8 +7,9 @@ use glam::{DAffine3, DVec2, DVec3};
 
 /// A B-spline curve of any degree from 1 to 100, rational where it has weights.
 ///
-/// Fields are private so that a value is always valid: `knots.len() == points.len() + degree + 1`, knots do not
-/// decrease, the domain `knots[degree]..knots[points.len()]` is not empty, weights (if any) are finite and non-zero.
+/// Fields are private so that a value is always valid: `knots.len() == points.len() + degree + 1`, knots do
+/// not decrease, the domain `knots[degree]..knots[points.len()]` is not empty, weights (if any) are finite
+/// and non-zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NurbsCurve<V> {
     degree: usize,
@@ -24,6 +25,16 @@ pub type NurbsCurve3 = NurbsCurve<DVec3>;
 
 impl<V: Vector> NurbsCurve<V> {
     /// Checks and builds. Weights that are all equal are dropped.
+    ///
+    /// ```
+    /// use chordal_nurbs::{DVec2, NurbsCurve2};
+    /// // A quarter of the unit circle.
+    /// let points = vec![DVec2::X, DVec2::ONE, DVec2::Y];
+    /// let weights = vec![1.0, 0.5_f64.sqrt(), 1.0];
+    /// let arc = NurbsCurve2::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], points, Some(weights))?;
+    /// assert!((arc.point(0.3).length() - 1.0).abs() < 1e-15);
+    /// # Ok::<(), chordal_nurbs::NurbsError>(())
+    /// ```
     ///
     /// # Errors
     /// Any [`NurbsError`] that names what does not fit.
@@ -76,8 +87,8 @@ impl<V: Vector> NurbsCurve<V> {
         self.derivatives(t)
     }
 
-    /// Sums are taken relative to the first control point concerned: derivatives then keep their digits far from the
-    /// origin.
+    /// Sums are taken relative to the first control point concerned: derivatives then keep their digits far
+    /// from the origin.
     #[inline]
     fn derivatives<const R: usize>(&self, t: f64) -> [V; R] {
         let basis = Basis::<R>::new(self.degree, &self.knots, t);
@@ -132,7 +143,8 @@ impl<V: Vector> NurbsCurve<V> {
         basis::breaks(self.degree, &self.knots)
     }
 
-    /// Interior knots at which the parametrisation may be less than `continuity` times continuously differentiable.
+    /// Interior knots at which the parametrisation may be less than `continuity` times continuously
+    /// differentiable.
     pub fn breaks_below(&self, continuity: usize) -> Vec<f64> {
         basis::breaks_below(self.degree, &self.knots, continuity)
     }

@@ -10,7 +10,8 @@ use memo::Memo;
 
 /// A tensor-product B-spline surface of any degree from 1 to 100, rational where it has weights.
 ///
-/// Control point (i, j), i along u, is `points[i * count_v + j]`. The same invariants as [`crate::NurbsCurve`].
+/// Control point (i, j), i along u, is `points[i * count_v + j]`. The same invariants as
+/// [`crate::NurbsCurve`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct NurbsSurface {
     degree_u: usize,
@@ -26,7 +27,8 @@ pub struct NurbsSurface {
 }
 
 impl NurbsSurface {
-    /// Checks and builds; `points` and `weights` row by row, v running fastest. Weights that are all equal are dropped.
+    /// Checks and builds; `points` and `weights` row by row, v running fastest. Weights that are all equal
+    /// are dropped.
     ///
     /// # Errors
     /// Any [`NurbsError`] that names what does not fit.

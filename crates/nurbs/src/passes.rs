@@ -1,7 +1,8 @@
-//! Evaluation by passes over tables: what a graphics processor does, on the CPU, as the reference for kernels.
+//! Evaluation by passes over tables: what a graphics processor does, on the CPU, as the reference for
+//! kernels.
 //!
-//! Source: Krishnamurthy, Khardekar, McMains 2009, sections 4 to 6. Every row of a table belongs to one parameter, and every
-//! pass does the same to every cell of it, whatever the degree:
+//! Source: Krishnamurthy, Khardekar, McMains 2009, sections 4 to 6. Every row of a table belongs to one
+//! parameter, and every pass does the same to every cell of it, whatever the degree:
 //!
 //! ```text
 //! knot table      t and the 2k knots u_{s−p} … u_{s+p+1} around its span s        k = p + 1
@@ -10,9 +11,10 @@
 //! last pass       rows times the control points that they belong to, summed
 //! ```
 //!
-//! A pass reads one of two tables and writes the other. The last column is zero throughout: with it no cell needs a branch for
-//! its right neighbour. Four parameters are packed in one cell, as the four channels of a texture. Sums have non-negative
-//! terms only, so every degree is as stable as the exact evaluator ([`crate::NurbsCurve::point`]), which tests compare with.
+//! A pass reads one of two tables and writes the other. The last column is zero throughout: with it no cell
+//! needs a branch for its right neighbour. Four parameters are packed in one cell, as the four channels of a
+//! texture. Sums have non-negative terms only, so every degree is as stable as the exact evaluator
+//! ([`crate::NurbsCurve::point`]), which tests compare with.
 
 use crate::basis::find_span;
 use crate::homogeneous::{Homogeneous, homogeneous};
@@ -100,7 +102,8 @@ impl KnotTable {
         Self { degree, cells }
     }
 
-    /// One pass over one row: column j holds the function with index s − p + j, its knots begin in column 1 + j.
+    /// One pass over one row: column j holds the function with index s − p + j, its knots begin in column 1 +
+    /// j.
     fn pass(&self, d: usize, row: usize, from: &[Cell], to: &mut [Cell]) {
         let width = 2 * self.degree + 3;
         let (t, knots) = self.cells[row * width..][..width].split_first().expect("at least three columns");
@@ -140,8 +143,8 @@ impl<V: Vector> NurbsCurve<V> {
 }
 
 impl NurbsSurface {
-    /// The points of the grid `us` × `vs` (u outer, v inner) by passes over tables; the same as [`Self::point`] up to
-    /// rounding.
+    /// The points of the grid `us` × `vs` (u outer, v inner) by passes over tables; the same as
+    /// [`Self::point`] up to rounding.
     pub fn points_by_passes(&self, us: &[f64], vs: &[f64]) -> Vec<DVec3> {
         if us.is_empty() || vs.is_empty() {
             return Vec::new();

@@ -2,8 +2,8 @@
 
 use crate::Vector;
 
-/// Where the point of the segment from `a` to `b` that is closest to `p` lies: 0 at `a`, 1 at `b`. 0 for a segment
-/// without length.
+/// Where the point of the segment from `a` to `b` that is closest to `p` lies: 0 at `a`, 1 at `b`. 0 for a
+/// segment without length.
 ///
 /// ```
 /// use chordal_nurbs::{DVec2, segment_foot};

@@ -21,7 +21,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const ROUNDED: f64 = 1e-14;
 
 impl Surface {
-    /// The point at `p_uv`. Closed free-form surfaces go round; others are evaluated at the domain's border beyond it.
+    /// The point at `p_uv`. Closed free-form surfaces go round; others are evaluated at the domain's border
+    /// beyond it.
     pub fn point(&self, p_uv: DVec2) -> DVec3 {
         let (u, v) = (p_uv.x, p_uv.y);
         match self {
@@ -59,8 +60,8 @@ impl Surface {
         }
     }
 
-    /// The point at `p_uv` with all derivatives to the second order. Second derivatives of offset surfaces whose basis
-    /// is not elementary are central differences.
+    /// The point at `p_uv` with all derivatives to the second order. Second derivatives of offset surfaces
+    /// whose basis is not elementary are central differences.
     pub fn jet(&self, p_uv: DVec2) -> SurfaceJet {
         let (u, v) = (p_uv.x, p_uv.y);
         match self {
@@ -94,8 +95,9 @@ impl Surface {
         }
     }
 
-    /// The unit normal along Su × Sv at `p_uv`. Where that vanishes (pole, apex, collapsed row) it is the limit from
-    /// inside the domain; on a cone's apex that of the nappe with v = 0 on it. `None` where there is none.
+    /// The unit normal along Su × Sv at `p_uv`. Where that vanishes (pole, apex, collapsed row) it is the
+    /// limit from inside the domain; on a cone's apex that of the nappe with v = 0 on it. `None` where there
+    /// is none.
     pub fn normal(&self, p_uv: DVec2) -> Option<DVec3> {
         let (u, v) = (p_uv.x, p_uv.y);
         match self {
@@ -108,8 +110,8 @@ impl Surface {
                 Some(n.normalize() * sign(radius + v * slope, side))
             }
             Surface::Sphere { frame, .. } => {
-                // Beyond the poles, where cos v < 0, the parametrisation is turned over. A negative radius turns both
-                // derivatives round, so that it has no effect on the normal.
+                // Beyond the poles, where cos v < 0, the parametrisation is turned over. A negative radius
+                // turns both derivatives round, so that it has no effect on the normal.
                 let turned = if v.abs() > FRAC_PI_2 { v.cos().signum() } else { 1.0 };
                 Some((frame.radial(u) * v.cos() + frame.z * v.sin()) * turned)
             }
@@ -139,7 +141,8 @@ impl Surface {
     }
 
     /// The parameters the surface is defined for: infinite where unbounded, `0..=2π` for angles, `±π/2` for a
-    /// sphere's latitude, from pole to pole for that of a torus that meets its axis. A cone reaches over both nappes.
+    /// sphere's latitude, from pole to pole for that of a torus that meets its axis. A cone reaches over both
+    /// nappes.
     pub fn domain(&self) -> UvBox {
         let angle = Range::new(0.0, TAU);
         match self {
@@ -157,8 +160,8 @@ impl Surface {
         }
     }
 
-    /// The periods in u and v of directions that close: 2π for angles, the domain's length for free-form directions
-    /// whose two ends meet.
+    /// The periods in u and v of directions that close: 2π for angles, the domain's length for free-form
+    /// directions whose two ends meet.
     pub fn periods(&self) -> [Option<f64>; 2] {
         match self {
             Surface::Plane { .. } => [None, None],

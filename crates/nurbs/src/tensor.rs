@@ -7,8 +7,8 @@ use glam::DVec3;
 
 /// Derivatives `[by u][by v]` of total order below `R` (at most 3); the others are left zero.
 ///
-/// `points` and `weights` are the whole net, `stride` the number of points along v. Sums are taken relative to the
-/// first control point concerned: derivatives then keep their digits far from the origin.
+/// `points` and `weights` are the whole net, `stride` the number of points along v. Sums are taken relative
+/// to the first control point concerned: derivatives then keep their digits far from the origin.
 #[inline]
 pub(crate) fn derivatives<const R: usize>(
     bu: &Basis<R>,

@@ -48,7 +48,8 @@ macro_rules! vector {
 }
 vector!(DVec2, DVec3, DVec4);
 
-/// The largest of some non-negative values; infinity where one is not a number, so that no overflow passes as proof.
+/// The largest of some non-negative values; infinity where one is not a number, so that no overflow passes as
+/// proof.
 pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| if value.is_nan() { f64::INFINITY } else { most.max(value) })
 }

@@ -1,4 +1,5 @@
-//! Evaluation by passes (Krishnamurthy, Khardekar, McMains 2009) against the exact evaluator and closed forms.
+//! Evaluation by passes (Krishnamurthy, Khardekar, McMains 2009) against the exact evaluator and closed
+//! forms.
 
 mod common;
 

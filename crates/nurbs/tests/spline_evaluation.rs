@@ -131,7 +131,8 @@ fn rational_quadratics_make_an_exact_circle() {
     assert!(circle.is_closed());
 }
 
-/// A cyclic cubic: uniform knots, the first three points repeated. Smooth across its seam, which lies anywhere.
+/// A cyclic cubic: uniform knots, the first three points repeated. Smooth across its seam, which lies
+/// anywhere.
 #[test]
 fn cyclic_knots_close_smoothly() {
     let mut random = Random(7);

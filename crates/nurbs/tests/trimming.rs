@@ -1,4 +1,5 @@
-//! Trimming curves lifted and made polylines: against the surface itself, brute force, and the document's own way.
+//! Trimming curves lifted and made polylines: against the surface itself, brute force, and the document's own
+//! way.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -38,7 +39,8 @@ fn plane_curve(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Weights from 1e-3 to 1e3 and degrees up to 20: neither criterion is ever undercut, and the line is the smaller one.
+    /// Weights from 1e-3 to 1e3 and degrees up to 20: neither criterion is ever undercut, and the line is the
+    /// smaller one.
     #[test]
     fn criteria_bound_what_is_sampled(seed: u64, n in 1usize..=20, rational: bool) {
         let curve = random_curve(&mut Random(seed), n, rational, 3.0);
@@ -63,7 +65,8 @@ proptest! {
         }
     }
 
-    /// Pieces lie on the surface over their plane curves, at equal parameters, rational or not, and hang together.
+    /// Pieces lie on the surface over their plane curves, at equal parameters, rational or not, and hang
+    /// together.
     #[test]
     fn lifted_pieces_lie_on_the_surface(
         seed: u64, p in 1usize..=4, q in 1usize..=4, n in 1usize..=4, kinds in 0u8..4, spare in 0usize..4,
@@ -83,7 +86,8 @@ proptest! {
             // A small weight hides a degree from proof; without weights every spare one goes.
             let most = if kinds & 2 == 2 { n + spare } else { n };
             prop_assert!(piece.uv.degree() <= most);
-            // The error is relative to the size of what is composed: weights of a patch may differ a million times.
+            // The error is relative to the size of what is composed: weights of a patch may differ a million
+            // times.
             let slack = piece.error + if kinds & 1 == 1 { 1e-6 } else { 1e-9 };
             for k in 0..=16 {
                 // Inside: a knot of full multiplicity may be a jump of the surface.
@@ -93,7 +97,8 @@ proptest! {
                 prop_assert!(off <= slack, "{off} {}", piece.error);
                 let t = piece.range.start + s * piece.range.length();
                 let gap = uv.distance(curve.eval(t));
-                // Rational pieces keep the curve, not its parameters; those stay the curve's own here, as nothing is reparametrised.
+                // Rational pieces keep the curve, not its parameters; those stay the curve's own here, as
+                // nothing is reparametrised.
                 prop_assert!(gap <= 1e-8 * (1.0 + surface.domain().size().length()), "{gap}");
             }
         }
@@ -230,8 +235,8 @@ fn tightness_of_the_criteria() {
     }
 }
 
-/// Degree reduction as printed compares the recursion from the left with the one from the right: both lose all digits towards
-/// their far ends. Each up to the middle, they agree.
+/// Degree reduction as printed compares the recursion from the left with the one from the right: both lose
+/// all digits towards their far ends. Each up to the middle, they agree.
 #[test]
 fn reduction_as_printed_explodes() {
     let mut random = Random(77);

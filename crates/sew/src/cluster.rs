@@ -1,7 +1,8 @@
-//! Vertices within the tolerance of each other become one, transitively as long as no vertex moves further than that.
+//! Vertices within the tolerance of each other become one, transitively as long as no vertex moves further
+//! than that.
 //!
-//! Pairs are joined in the order of their distances. A join that would move a vertex too far, or that would make the two
-//! ends of an edge that must stay the same, is left out.
+//! Pairs are joined in the order of their distances. A join that would move a vertex too far, or that would
+//! make the two ends of an edge that must stay the same, is left out.
 
 use crate::tree::Tree;
 use chordal_nurbs::Box3;

@@ -1,5 +1,5 @@
-//! T-ends: an edge is cut where a vertex of another one lies on it, so that what overlaps becomes pieces between the same
-//! vertices.
+//! T-ends: an edge is cut where a vertex of another one lies on it, so that what overlaps becomes pieces
+//! between the same vertices.
 
 use crate::border::{Border, Borders};
 use crate::cluster::Clusters;
@@ -115,7 +115,8 @@ fn cuts_at(
     found
 }
 
-/// Those of the cuts of a border (in the order of their parameters) that leave no sliver; the closer one of two.
+/// Those of the cuts of a border (in the order of their parameters) that leave no sliver; the closer one of
+/// two.
 fn kept(border: &Border, ends: [u32; 2], cuts: &[Cut], tolerance: f64) -> Vec<Cut> {
     let shortest = SHORTEST * tolerance;
     let apart = |t0: f64, t1: f64| border.curve.point(t0).distance(border.curve.point(t1));

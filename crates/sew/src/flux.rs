@@ -1,8 +1,10 @@
-//! Integrals over a face from its loops alone: which way a closed shell faces, and whether a point is inside it.
+//! Integrals over a face from its loops alone: which way a closed shell faces, and whether a point is inside
+//! it.
 //!
-//! For any g on the parameter plane, ∬ g du dv = −∮ F du with F(u, v) = ∫ g dv from v₀ to v, the interior on the left (Green).
-//! A loop that winds round a closed direction needs no seam so, and a pole at v₀ adds nothing. Where a loop winds in v the
-//! parts of u and v are exchanged. The integrals are taken by a quadrature that is good for signs and whole numbers.
+//! For any g on the parameter plane, ∬ g du dv = −∮ F du with F(u, v) = ∫ g dv from v₀ to v, the interior on
+//! the left (Green). A loop that winds round a closed direction needs no seam so, and a pole at v₀ adds
+//! nothing. Where a loop winds in v the parts of u and v are exchanged. The integrals are taken by a
+//! quadrature that is good for signs and whole numbers.
 
 use crate::uv_loops::{UvLoop, uv_loops};
 use chordal_brep::{Face, FaceGeometry, Part};
@@ -19,8 +21,8 @@ const GAUSS: [(f64, f64); 4] = [
 /// Pieces that each path from v₀ is cut into.
 const PIECES: usize = 4;
 
-/// The flux of a field through a face along its normal as a part of its shell; `None` where it has no surface or loops that
-/// cannot be followed.
+/// The flux of a field through a face along its normal as a part of its shell; `None` where it has no surface
+/// or loops that cannot be followed.
 fn flux(part: &Part, face: &Face, pieces: usize, field: impl Fn(DVec3) -> DVec3) -> Option<f64> {
     let FaceGeometry::Surface(surface) = &face.geometry else { return None };
     let loops = uv_loops(part, face, surface)?;
@@ -67,7 +69,8 @@ fn across(density: &impl Fn(DVec2) -> f64, at: DVec2, axis: usize, base: f64, pi
     sum * step
 }
 
-/// Where the paths begin: at the pole that a single winding loop encloses, or at the lowest value of the loops.
+/// Where the paths begin: at the pole that a single winding loop encloses, or at the lowest value of the
+/// loops.
 fn base(surface: &Surface, loops: &[UvLoop], axis: usize) -> Option<f64> {
     let other = 1 - axis;
     let winding: f64 = loops.iter().map(|l| l.winding[axis]).sum();

@@ -1,8 +1,9 @@
 //! How far borders are from each other: the merge tolerance `auto`, and what `info` shows of it.
 //!
-//! At three places of every border the distance to the nearest other border is measured. Gaps that the file means to be
-//! joints crowd at the bottom of the histogram, real openings at its top; between them is a valley. The tolerance lies
-//! in the widest valley (as a ratio) between the file's own resolution and [`LARGEST_GAP`] of the part, near its lower end.
+//! At three places of every border the distance to the nearest other border is measured. Gaps that the file
+//! means to be joints crowd at the bottom of the histogram, real openings at its top; between them is a
+//! valley. The tolerance lies in the widest valley (as a ratio) between the file's own resolution and
+//! [`LARGEST_GAP`] of the part, near its lower end.
 
 use crate::border::{Borders, edge_uses};
 use crate::foot::foot;
@@ -14,11 +15,13 @@ use rayon::prelude::*;
 
 /// No joint of a part is wider than this share of its diagonal.
 pub(crate) const LARGEST_GAP: f64 = 2e-3;
-/// What coordinates are good for where the file says nothing, as a share of the diagonal: files with six digits.
+/// What coordinates are good for where the file says nothing, as a share of the diagonal: files with six
+/// digits.
 pub(crate) const RESOLUTION: f64 = 1e-6;
 /// A valley is clear where its upper end is so many times its lower one.
 pub(crate) const CLEAR: f64 = 4.0;
-/// The tolerance lies so many times above the largest gap to be sewn: ends of edges are off by more than their middles.
+/// The tolerance lies so many times above the largest gap to be sewn: ends of edges are off by more than
+/// their middles.
 const MARGIN: f64 = 3.0;
 
 /// Gaps between two powers of ten.

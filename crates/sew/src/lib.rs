@@ -1,7 +1,8 @@
 //! Sewing: loose trimmed surfaces become bodies whose faces share edges.
 //!
-//! Many formats have no topology, each face is an island. Before meshing, shared edges are inferred from the geometry of
-//! the edges that one face alone uses, so that the stages behind share vertices by identity as they do for solids:
+//! Many formats have no topology, each face is an island. Before meshing, shared edges are inferred from the
+//! geometry of the edges that one face alone uses, so that the stages behind share vertices by identity as
+//! they do for solids:
 //!
 //! ```text
 //!   borders ([`border`])       edges with one use, as polylines in a tree; faces without loops get their natural ones
@@ -15,8 +16,8 @@
 //!
 //! Meshes that come without surfaces are sewn along their polygon borders: [`sew_mesh`].
 //!
-//! Edges that are used twice are never touched. The grid of the 2001 paper (Kahlesz, Balázs and Klein, section 8) is a
-//! tree here, because the sizes of edges in one file differ by many orders of magnitude.
+//! Edges that are used twice are never touched. The grid of the 2001 paper (Kahlesz, Balázs and Klein,
+//! section 8) is a tree here, because the sizes of edges in one file differ by many orders of magnitude.
 
 #![deny(missing_docs)]
 

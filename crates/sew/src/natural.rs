@@ -1,4 +1,5 @@
-//! Faces without loops are whole surfaces: where such a surface ends its border becomes edges, so that it can be sewn.
+//! Faces without loops are whole surfaces: where such a surface ends its border becomes edges, so that it can
+//! be sewn.
 //!
 //! A side that is closed onto the opposite one is no border, nor one that is a single point.
 

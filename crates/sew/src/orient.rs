@@ -14,7 +14,8 @@ pub(crate) struct Oriented {
     pub contradictions: usize,
 }
 
-/// Walks from the lowest face of every component outwards; of two answers the one that turns fewer faces is taken.
+/// Walks from the lowest face of every component outwards; of two answers the one that turns fewer faces is
+/// taken.
 pub(crate) fn orient(faces: usize, flipped: &[bool], links: &[Link]) -> Oriented {
     let mut of_face: Vec<Vec<u32>> = vec![Vec::new(); faces];
     for (k, link) in links.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Pieces between the same two vertices that run along each other within the tolerance become one edge.
 //!
-//! Two are a pair. Where more meet, they are paired such that as few as possible stay alone, of one body before across
-//! bodies, the closer ones first, and never two faces that lie on each other. One that stays alone joins
-//! the edge of a pair (three faces at an edge).
+//! Two are a pair. Where more meet, they are paired such that as few as possible stay alone, of one body
+//! before across bodies, the closer ones first, and never two faces that lie on each other. One that stays
+//! alone joins the edge of a pair (three faces at an edge).
 
 use crate::border::{Border, Borders};
 use crate::cut::{Piece, Pieces};
@@ -27,7 +27,8 @@ const SEAM_REST: f64 = 8.0;
 /// Pieces that become one edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Joint {
-    /// The piece whose curve is kept, then the others with whether they run against it and how far off they are.
+    /// The piece whose curve is kept, then the others with whether they run against it and how far off they
+    /// are.
     pub leader: u32,
     pub others: Vec<(u32, bool, f64)>,
     /// Two faces that continue each other here; the rest only touches.
@@ -192,8 +193,8 @@ impl Pairing<'_> {
         closed && (inner > enough || at_pole(ends[0]) || at_pole(ends[1]))
     }
 
-    /// True where two faces lie on each other beside the pieces: copies, or sides of bodies that touch. Sewn to each other they
-    /// would enclose nothing.
+    /// True where two faces lie on each other beside the pieces: copies, or sides of bodies that touch. Sewn
+    /// to each other they would enclose nothing.
     fn on_each_other(&self, a: u32, b: u32) -> bool {
         let (Some(x), Some(y)) = (self.inward(a), self.inward(b)) else { return false };
         if x.dot(y) <= ON_EACH_OTHER {
@@ -238,7 +239,8 @@ impl Pairing<'_> {
         Joint { leader, others: vec![(other, c.reversed, c.distance)], pair: [a, b] }
     }
 
-    /// The smaller the better: how far the curve is off its own face where that matters, then how simple it is.
+    /// The smaller the better: how far the curve is off its own face where that matters, then how simple it
+    /// is.
     fn accuracy(&self, piece: u32, apart: f64) -> (u64, u32, u32) {
         let border = self.border(piece);
         let alike = ALIKE * self.tolerance;

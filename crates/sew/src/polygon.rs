@@ -1,12 +1,13 @@
-//! Loops that are polygons of points: where some side of one is open, all get straight edges, so that they can be sewn.
+//! Loops that are polygons of points: where some side of one is open, all get straight edges, so that they
+//! can be sewn.
 
 use chordal_brep::{Coedge, Edge, EdgeId, Loop, Part, VertexId};
 use chordal_nurbs::{Curve, Range};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Replaces the polygon loops of a part by loops of straight edges, unless all their sides are shared already. Returns
-/// how many were replaced.
+/// Replaces the polygon loops of a part by loops of straight edges, unless all their sides are shared
+/// already. Returns how many were replaced.
 pub(crate) fn add_polygon_edges(part: &mut Part) -> usize {
     let mut sides: BTreeMap<[VertexId; 2], u32> = BTreeMap::new();
     for a_loop in part.faces.iter().flat_map(|f| &f.loops) {

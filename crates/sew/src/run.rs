@@ -61,7 +61,8 @@ pub fn sew_part(part: &Part, tolerance: SewTolerance) -> (Part, SewReport) {
     }
     let sewing = Sewing { part: &given, uses: &uses, borders: &borders, tolerance: length };
     let mut best = sewing.attempt(&[]);
-    // Edges shorter than the tolerance that found no partner keep their neighbours' ends apart: let them vanish.
+    // Edges shorter than the tolerance that found no partner keep their neighbours' ends apart: let them
+    // vanish.
     let short = sewing.short_open(&best);
     if !short.is_empty() {
         let second = sewing.attempt(&short);

@@ -24,7 +24,8 @@ pub(crate) fn body_of_faces(part: &Part) -> Vec<u32> {
     body
 }
 
-/// Which faces belong to shells that have a border in them, or to none; faces of several shells are left alone.
+/// Which faces belong to shells that have a border in them, or to none; faces of several shells are left
+/// alone.
 pub(crate) fn affected(part: &Part, has_border: &[bool]) -> Vec<bool> {
     let mut uses = vec![0_u32; part.faces.len()];
     part.shells.iter().flat_map(|s| &s.faces).for_each(|f| uses[f.index()] += 1);
@@ -38,7 +39,8 @@ pub(crate) fn affected(part: &Part, has_border: &[bool]) -> Vec<bool> {
     affected
 }
 
-/// Replaces the shells of the affected faces by their connected components, and their bodies by what these make.
+/// Replaces the shells of the affected faces by their connected components, and their bodies by what these
+/// make.
 pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, links: &[Link]) -> Shells {
     let body_of = body_of_faces(part);
     let mut members: Vec<Vec<FaceId>> = vec![Vec::new(); oriented.components];
@@ -77,7 +79,8 @@ pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, l
 /// A volume smaller than this share of what it is the sum of is lost in the quadrature: the mesh will tell.
 const SURE: f64 = 1e-3;
 
-/// Turns over the new closed shells whose volume has the wrong sign: that of an outer one is positive, a void's negative.
+/// Turns over the new closed shells whose volume has the wrong sign: that of an outer one is positive, a
+/// void's negative.
 fn turn_outward(part: &mut Part, first_new: usize) {
     let mut wrong: Vec<FaceId> = Vec::new();
     for body in part.bodies.iter().filter(|b| b.kind == BodyKind::Solid) {
@@ -133,7 +136,8 @@ fn keep_unaffected(part: &mut Part, affected: &[bool]) {
     }
 }
 
-/// Gives new shells to body `old` (or to new ones of its name): every closed one a solid, the open ones a sheet.
+/// Gives new shells to body `old` (or to new ones of its name): every closed one a solid, the open ones a
+/// sheet.
 fn add_bodies(part: &mut Part, old: usize, shells: &[(ShellId, bool)]) {
     let template = part.bodies.get(old).cloned().unwrap_or_else(|| Body {
         kind: BodyKind::Sheet,

@@ -1,4 +1,5 @@
-//! A tree of boxes over the chords of all borders: built by halving at the median, asked for boxes and nearest items.
+//! A tree of boxes over the chords of all borders: built by halving at the median, asked for boxes and
+//! nearest items.
 
 use chordal_nurbs::Box3;
 use glam::DVec3;
@@ -9,7 +10,8 @@ const LEAF: usize = 4;
 #[derive(Clone, Copy, Debug)]
 struct Node {
     bounds: Box3,
-    /// The leaf's run of `order`; of an inner node (`count` zero) the index of its right child, the left one follows it.
+    /// The leaf's run of `order`; of an inner node (`count` zero) the index of its right child, the left one
+    /// follows it.
     first: u32,
     count: u32,
 }
@@ -70,8 +72,8 @@ impl Tree {
         }
     }
 
-    /// The smallest `distance` of an item from `p`, where one is below `limit`. `distance` is `None` for items that do not count,
-    /// and never less than the distance from the item's box.
+    /// The smallest `distance` of an item from `p`, where one is below `limit`. `distance` is `None` for
+    /// items that do not count, and never less than the distance from the item's box.
     pub fn nearest(
         &self,
         p: DVec3,

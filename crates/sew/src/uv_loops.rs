@@ -80,8 +80,8 @@ impl UvLoop {
     }
 }
 
-/// Per face, the loops that run the same way as the one around them: meshing turns them round, so what they say of the
-/// direction of their neighbours is wrong. The outermost loop is taken as it is.
+/// Per face, the loops that run the same way as the one around them: meshing turns them round, so what they
+/// say of the direction of their neighbours is wrong. The outermost loop is taken as it is.
 pub(crate) fn wrong_loops(part: &Part) -> Vec<Vec<usize>> {
     part.faces.par_iter().with_min_len(64).map(|face| wrong_loops_of(part, face)).collect()
 }

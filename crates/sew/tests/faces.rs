@@ -144,7 +144,8 @@ fn two_faces_with_a_common_side_share_it() {
     assert_eq!((report.sewn, report.open.len(), report.shells, report.closed_shells), (1, 6, 1, 0));
     assert_eq!((part.vertices.len(), part.edges.len(), used_twice(&part)), (6, 7, 1));
     assert_eq!(report.largest_move, 0.0);
-    // The middle of the side at the left is half a unit from the one below it, which is no opening; all others are as far.
+    // The middle of the side at the left is half a unit from the one below it, which is no opening; all
+    // others are as far.
     assert!(report.open.iter().all(|o| o.nearest.is_some_and(|d| d > 0.4)));
 }
 
@@ -452,7 +453,8 @@ fn loose_box(cuts: &[Vec<f64>; 3], jitter: &[f64], turned: &[bool]) -> Islands {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// A box of loose patches closes at a tolerance a few times their jitter, and no vertex moves further than that.
+    /// A box of loose patches closes at a tolerance a few times their jitter, and no vertex moves further
+    /// than that.
     #[test]
     fn loose_boxes_close(
         cuts in prop::array::uniform3(prop::collection::vec(1..9_u32, 0..4)),

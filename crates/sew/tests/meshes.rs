@@ -65,7 +65,8 @@ fn volume(mesh: &SewnMesh) -> f64 {
         .sum()
 }
 
-/// A drum: its wall and its two ends are meshes of their own, with other vertices along the circles that they share.
+/// A drum: its wall and its two ends are meshes of their own, with other vertices along the circles that they
+/// share.
 #[test]
 fn auto_tells_the_chords_of_a_curve_from_its_openings() {
     let mut soup = Soup::default();
@@ -183,7 +184,8 @@ fn auto_finds_the_valley() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Two sheets with a common curved border of different fineness, both moved about a little: one border is left.
+    /// Two sheets with a common curved border of different fineness, both moved about a little: one border is
+    /// left.
     #[test]
     fn curved_borders_of_any_fineness_are_sewn(
         m in 2_usize..30, n in 2_usize..30, bend in 0.0..0.5_f64,

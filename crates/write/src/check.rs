@@ -1,4 +1,5 @@
-//! Whether a scene is consistent: every index in range, the nodes a tree. Writers index without further checks.
+//! Whether a scene is consistent: every index in range, the nodes a tree. Writers index without further
+//! checks.
 
 use chordal_mesh::{PartMesh, PassThrough, Scene, ScenePart};
 use std::fmt;

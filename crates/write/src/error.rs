@@ -7,9 +7,9 @@ use std::path::PathBuf;
 
 /// Why a scene could not be written. The file at the path, if there was one, is unchanged.
 ///
-/// Three kinds of cause: the place ([`File`](Self::File), [`NotAFile`](Self::NotAFile), [`Io`](Self::Io)), the values
-/// of the mesh ([`NotFinite`](Self::NotFinite), [`TooLarge`](Self::TooLarge)), and a scene that the caller built
-/// wrongly ([`Scene`](Self::Scene)).
+/// Three kinds of cause: the place ([`File`](Self::File), [`NotAFile`](Self::NotAFile), [`Io`](Self::Io)),
+/// the values of the mesh ([`NotFinite`](Self::NotFinite), [`TooLarge`](Self::TooLarge)), and a scene that
+/// the caller built wrongly ([`Scene`](Self::Scene)).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {

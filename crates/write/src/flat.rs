@@ -42,7 +42,8 @@ pub(crate) enum Source<'a> {
     PassThrough { normals: &'a [DVec3] },
 }
 
-/// A polygon of a patch: which of all corners of its triangles (three times the triangle's index, and its own) are its own.
+/// A polygon of a patch: which of all corners of its triangles (three times the triangle's index, and its
+/// own) are its own.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polygon {
     slots: [usize; 4],

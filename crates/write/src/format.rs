@@ -65,7 +65,8 @@ impl Format {
         matches!(self, Self::Glb | Self::Gltf)
     }
 
-    /// The unit written unless options say otherwise: metres in glTF, as its specification demands, else millimetres.
+    /// The unit written unless options say otherwise: metres in glTF, as its specification demands, else
+    /// millimetres.
     pub fn default_unit(self) -> Unit {
         if self.is_gltf() { Unit::Metre } else { Unit::Millimetre }
     }

@@ -50,7 +50,8 @@ pub(crate) struct Place {
 impl Place {
     pub fn new(world: DAffine3, frame: Frame) -> Self {
         let m = world.matrix3;
-        // The cofactor matrix is det(m)·m⁻ᵀ: it needs no division, so a flattening placement is no special case.
+        // The cofactor matrix is det(m)·m⁻ᵀ: it needs no division, so a flattening placement is no special
+        // case.
         let cofactor =
             DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
         let mirrored = m.determinant() < 0.0;

@@ -1,9 +1,11 @@
 //! Writers of mesh files: STL, GLB, glTF, OBJ, PLY and 3MF from one [`Scene`].
 //!
-//! [`to_bytes`] makes a file in memory, [`write_to`] writes to any [`Write`], [`write_scene`] replaces a file.
+//! [`to_bytes`] makes a file in memory, [`write_to`] writes to any [`Write`], [`write_scene`] replaces a
+//! file.
 //!
-//! A vertex's coordinates in the file are its part's, times the placement (millimetres), times the change of unit and
-//! axes, all in 64 bits; a 32-bit format rounds only the result. The same scene and options give the same bytes.
+//! A vertex's coordinates in the file are its part's, times the placement (millimetres), times the change of
+//! unit and axes, all in 64 bits; a 32-bit format rounds only the result. The same scene and options give the
+//! same bytes.
 //!
 //! ```
 //! use chordal_mesh::{PassThrough, Scene, SceneNode, ScenePart};
@@ -74,8 +76,8 @@ const LIBRARY_NAME: &str = "model.mtl";
 pub struct Encoded {
     /// The file's contents.
     pub bytes: Vec<u8>,
-    /// The material library of an OBJ file with colours, to which the file refers by the library's name. Absent for
-    /// other formats and without colours.
+    /// The material library of an OBJ file with colours, to which the file refers by the library's name.
+    /// Absent for other formats and without colours.
     pub library: Option<Library>,
     /// What the file holds, and how far rounding moved it.
     pub summary: WriteSummary,
@@ -108,8 +110,8 @@ pub fn to_bytes(scene: &Scene, options: &WriteOptions) -> Result<Encoded, WriteE
     Ok(Encoded { bytes, library, summary })
 }
 
-/// Writes a scene to a file. A file at `path` is replaced only once the new one is complete. An OBJ file with colours
-/// gets a material library of the same name beside it.
+/// Writes a scene to a file. A file at `path` is replaced only once the new one is complete. An OBJ file with
+/// colours gets a material library of the same name beside it.
 ///
 /// # Errors
 /// As [`to_bytes`], and if a file cannot be created, written or renamed. A file at `path` is untouched then.
@@ -134,7 +136,8 @@ pub fn write_scene(scene: &Scene, path: &Path, options: &WriteOptions) -> Result
     Ok(summary)
 }
 
-/// Writes a scene to any writer. An OBJ file gets no colours this way, as they need a second file: see [`to_bytes`].
+/// Writes a scene to any writer. An OBJ file gets no colours this way, as they need a second file: see
+/// [`to_bytes`].
 ///
 /// # Errors
 /// As [`to_bytes`], and if `out` fails. Bytes written before an error are incomplete.
@@ -173,7 +176,8 @@ fn write_stream(
     Ok(tally.finish(counter.bytes, options))
 }
 
-/// The material library of an OBJ file, complete but not yet under its name, with that name; none without colours.
+/// The material library of an OBJ file, complete but not yet under its name, with that name; none without
+/// colours.
 fn new_library(
     scene: &Scene,
     path: &Path,

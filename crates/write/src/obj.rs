@@ -1,5 +1,5 @@
-//! OBJ: an object per placed part, a group per face, shared vertices, exact normals, 64-bit numbers in decimal digits;
-//! quadrilaterals where the mesh has them.
+//! OBJ: an object per placed part, a group per face, shared vertices, exact normals, 64-bit numbers in
+//! decimal digits; quadrilaterals where the mesh has them.
 //!
 //! Colours live in a material library (MTL) beside the file. Their parts are sRGB, as viewers show them.
 
@@ -160,8 +160,8 @@ impl Writer {
         Ok(())
     }
 
-    /// Writes each different normal of a patch once; returns the number of each triangle corner's normal, nothing
-    /// where the patch has none.
+    /// Writes each different normal of a patch once; returns the number of each triangle corner's normal,
+    /// nothing where the patch has none.
     fn patch_normals(
         &mut self,
         item: &Item<'_>,

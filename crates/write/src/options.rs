@@ -16,8 +16,8 @@ pub struct WriteOptions {
     pub edge_lines: bool,
     /// What one solid of an ASCII STL file holds. Other formats ignore it.
     pub solid_per: SolidPer,
-    /// The tolerance of the mesh in millimetres: 32-bit formats warn if rounding moves a vertex by over a tenth of it.
-    /// Without it there is no such warning.
+    /// The tolerance of the mesh in millimetres: 32-bit formats warn if rounding moves a vertex by over a
+    /// tenth of it. Without it there is no such warning.
     pub tolerance_mm: Option<f64>,
 }
 

@@ -1,8 +1,9 @@
-//! PLY: binary little endian, 64-bit coordinates, each point once per placed part, a face index per triangle (or
-//! quadrilateral, where the mesh has them: it counts as one wherever triangles are counted).
+//! PLY: binary little endian, 64-bit coordinates, each point once per placed part, a face index per triangle
+//! (or quadrilateral, where the mesh has them: it counts as one wherever triangles are counted).
 //!
-//! `face_id` counts the faces of all placed parts in the order of the tree; triangles that came tessellated have −1.
-//! A comment `part V NV T NT F NF NAME` per placed part gives its first vertex, triangle and face and how many it has.
+//! `face_id` counts the faces of all placed parts in the order of the tree; triangles that came tessellated
+//! have −1. A comment `part V NV T NT F NF NAME` per placed part gives its first vertex, triangle and face
+//! and how many it has.
 
 use crate::flat::{Item, Patch, Remap, Source, UNUSED, items, remaps};
 use crate::names::one_line;

@@ -6,8 +6,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Bytes gathered before a system call: large enough that a mesh of megabytes needs few of them, small beside the mesh
-/// itself.
+/// Bytes gathered before a system call: large enough that a mesh of megabytes needs few of them, small beside
+/// the mesh itself.
 const BUFFER: usize = 1 << 20;
 
 /// A writer that counts the bytes written to it.
@@ -49,7 +49,8 @@ pub(crate) struct NewFile {
 }
 
 impl NewFile {
-    /// Starts a file in the folder of `path`; if `path` is a link, in the folder of the file that it points to.
+    /// Starts a file in the folder of `path`; if `path` is a link, in the folder of the file that it points
+    /// to.
     pub fn create(path: &Path) -> Result<Self, WriteError> {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let error = |source| WriteError::File { path: path.to_owned(), source };

@@ -1,7 +1,8 @@
 //! STL: triangles and their normals, nothing shared, no unit.
 //!
-//! Binary STL is one unnamed solid of 32-bit floats. ASCII STL has named solids and carries 64-bit coordinates here:
-//! the fewest digits that read back as the same number. Normals are those of the triangles as written.
+//! Binary STL is one unnamed solid of 32-bit floats. ASCII STL has named solids and carries 64-bit
+//! coordinates here: the fewest digits that read back as the same number. Normals are those of the triangles
+//! as written.
 
 use crate::flat::{Item, Patch, Remap, Source, UNUSED, items};
 use crate::frame::triangle_normal;

@@ -5,8 +5,8 @@ use glam::{DVec3, Vec3};
 
 /// The share of the tolerance by which rounding may move a vertex without a warning.
 ///
-/// A tenth is lost in the noise of most uses, and the mesher keeps back a margin for it. A larger value would let a file
-/// miss its tolerance unnoticed; a smaller one would warn about nearly every STL file.
+/// A tenth is lost in the noise of most uses, and the mesher keeps back a margin for it. A larger value would
+/// let a file miss its tolerance unnoticed; a smaller one would warn about nearly every STL file.
 const ROUNDING_SHARE: f64 = 0.1;
 
 /// What a writer wrote.

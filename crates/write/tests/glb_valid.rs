@@ -1,4 +1,5 @@
-//! The GLB writer against the rules of glTF 2.0: chunks, alignment, bounds, boxes, indices, names of the extension.
+//! The GLB writer against the rules of glTF 2.0: chunks, alignment, bounds, boxes, indices, names of the
+//! extension.
 #![allow(clippy::unwrap_used)] // A failed test says where.
 
 mod common;

@@ -1,4 +1,5 @@
-//! The text formats, byte for byte. `CHORDAL_BLESS=1` writes the files anew; look at the difference before keeping it.
+//! The text formats, byte for byte. `CHORDAL_BLESS=1` writes the files anew; look at the difference before
+//! keeping it.
 #![allow(clippy::unwrap_used)] // A failed test says where.
 
 mod common;

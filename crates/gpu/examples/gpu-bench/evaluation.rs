@@ -166,8 +166,8 @@ pub fn curves(gpu: &Gpu) -> Result<(), GpuError> {
     Ok(())
 }
 
-/// What `chordal mesh --device gpu` asks for: points, first and second derivatives in double precision, there and back, against
-/// the host's own evaluator, point by point.
+/// What `chordal mesh --device gpu` asks for: points, first and second derivatives in double precision, there
+/// and back, against the host's own evaluator, point by point.
 pub fn mesher(gpu: &Gpu) -> Result<(), GpuError> {
     if !gpu.has_f64() {
         println!("No double precision in shaders here: `chordal mesh` evaluates on the CPU.\n");

@@ -1,18 +1,21 @@
 //! Grids on one core of the host, in double precision, row by row.
 //!
-//! Purpose: what the GPU is compared with, at the speed that one core has. Notation: a cell is a pair of spans, p and q the
-//! degrees along u and v, (x, y, z, w) homogeneous local coordinates, t the place in a span along u.
+//! Purpose: what the GPU is compared with, at the speed that one core has. Notation: a cell is a pair of
+//! spans, p and q the degrees along u and v, (x, y, z, w) homogeneous local coordinates, t the place in a
+//! span along u.
 //!
-//! 1. Once a surface ([`HostSurface::new`]): the Bézier net of each cell in powers of t along u, left in Bernstein form along v.
+//! 1. Once a surface ([`HostSurface::new`]): the Bézier net of each cell in powers of t along u, left in
+//!    Bernstein form along v.
 //! 2. Once a row v = const and span: the sum along v, p + 1 coefficients each of x, y, z, w.
-//! 3. In the same place the quotient X = x₀ / w₀ at t = 0 is taken out of the numerators, x(t) = X w(t) + t r(t), so that
-//!    x / w = X + r(t) · (t / w(t)): one degree less, and no products after the division. A rational bicubic point costs 12
-//!    fused multiply-adds and one division, a polynomial one 9 multiply-adds.
-//! 4. As many points at a time as a vector holds, by Horner's rule; what is left at the end of a span is the vector that ends
-//!    there, so that some points are found twice, to the same bits.
+//! 3. In the same place the quotient X = x₀ / w₀ at t = 0 is taken out of the numerators, x(t) = X w(t) + t
+//!    r(t), so that x / w = X + r(t) · (t / w(t)): one degree less, and no products after the division. A
+//!    rational bicubic point costs 12 fused multiply-adds and one division, a polynomial one 9 multiply-adds.
+//! 4. As many points at a time as a vector holds, by Horner's rule; what is left at the end of a span is the
+//!    vector that ends there, so that some points are found twice, to the same bits.
 //!
-//! Rows are handed out one after the other, so that they need never leave the cache. Not guaranteed: the digits of high
-//! degrees, which the power form loses (2^p units in the worst case, hence [`HIGHEST_DEGREE`]).
+//! Rows are handed out one after the other, so that they need never leave the cache. Not guaranteed: the
+//! digits of high degrees, which the power form loses (2^p units in the worst case, hence
+//! [`HIGHEST_DEGREE`]).
 
 use chordal_gpu::{GpuError, SurfaceSet};
 use pulp::{Arch, Simd, WithSimd};
@@ -46,7 +49,8 @@ impl<'a> HostSurface<'a> {
     /// Prepares a surface of a set made by [`SurfaceSet::with_bezier`].
     ///
     /// # Errors
-    /// [`GpuError::NoSuchSurface`]; [`GpuError::Device`] above [`HIGHEST_DEGREE`] along u or without Bézier nets.
+    /// [`GpuError::NoSuchSurface`]; [`GpuError::Device`] above [`HIGHEST_DEGREE`] along u or without Bézier
+    /// nets.
     pub fn new(set: &'a SurfaceSet<f64>, surface: usize) -> Result<Self, GpuError> {
         let entry = set.entries().get(surface).ok_or(GpuError::NoSuchSurface(surface))?;
         let [p, q] = entry.degree;
@@ -72,8 +76,9 @@ impl<'a> HostSurface<'a> {
         Ok(Self { breaks: entry.breaks(), degree: [p, q], form, nets })
     }
 
-    /// Evaluates the grid `us` × `vs` and calls `row` with the number of v and the x, y and z of all u, in the surface's local
-    /// coordinates. Parameters outside the domain are clamped to it; `us` that ascend are fastest.
+    /// Evaluates the grid `us` × `vs` and calls `row` with the number of v and the x, y and z of all u, in
+    /// the surface's local coordinates. Parameters outside the domain are clamped to it; `us` that ascend are
+    /// fastest.
     pub fn grid(&self, us: &[f64], vs: &[f64], mut row: impl FnMut(usize, [&[f64]; 3])) {
         let [p, q] = self.degree;
         let [along_u, along_v] = self.breaks;
@@ -89,7 +94,8 @@ impl<'a> HostSurface<'a> {
         let [ts, x, y, z] = arrays;
         let mut coefficients = [vec![0.0; 4 * (p + 1) * runs.len()], vec![0.0; 4 * (p + 1) * runs.len()]];
         let mut weights = vec![0.0; q + 1];
-        // The coefficients of a row are found while the points of the row before it are: neither waits for the other.
+        // The coefficients of a row are found while the points of the row before it are: neither waits for
+        // the other.
         for j in 0..=vs.len() {
             let [ready, next] = &mut coefficients;
             let line = vs.get(j).map(|&v| {
@@ -124,8 +130,8 @@ fn locate(breaks: &[f64], t: f64) -> (usize, f64) {
 const LINE: usize = 8;
 const PAGE: usize = 512;
 
-/// From one of four arrays to the next: a quarter of a page beyond whole pages. Were all at the same place of their pages, the
-/// core would take loads of one for loads of what has just been stored into another.
+/// From one of four arrays to the next: a quarter of a page beyond whole pages. Were all at the same place of
+/// their pages, the core would take loads of one for loads of what has just been stored into another.
 fn stagger(count: usize) -> usize {
     count.next_multiple_of(PAGE) + PAGE / 4
 }
@@ -169,9 +175,9 @@ fn powers(ordinates: &mut [f64]) {
     }
 }
 
-/// The points of one row and the coefficients of the next. Everything of it must be inlined into one function with the widest
-/// instructions there are: closures given to library functions (`map`, `from_fn`) would be compiled without them, so plain
-/// loops stand here.
+/// The points of one row and the coefficients of the next. Everything of it must be inlined into one function
+/// with the widest instructions there are: closures given to library functions (`map`, `from_fn`) would be
+/// compiled without them, so plain loops stand here.
 struct Rows<'a> {
     form: Form,
     /// Spans, and how many of the points lie in each.
@@ -290,7 +296,8 @@ const MOST_LANES: usize = 8;
 /// Step 4: all points of one span in one row.
 #[inline(always)]
 fn points<S: Simd, const FORM: u8>(simd: S, line: &[f64], ts: &[f64], out: [&mut [f64]; 3]) {
-    // Arrays of a length known to the compiler stay in registers, and their loop over degrees leaves the loop over points.
+    // Arrays of a length known to the compiler stay in registers, and their loop over degrees leaves the loop
+    // over points.
     match line.len() / 4 {
         2 => vectors::<S, FORM>(simd, &splat::<S, 2>(simd, line), ts, out),
         3 => vectors::<S, FORM>(simd, &splat::<S, 3>(simd, line), ts, out),

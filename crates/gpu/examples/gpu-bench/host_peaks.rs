@@ -1,7 +1,7 @@
 //! What binds one core of the host, found by running it with the instructions that rows run with.
 //!
-//! On many cores the divider sits in one of the units that multiply and add, so neither peak alone is what a mixture can
-//! reach; hence the third figure, of both at once in the proportion wanted.
+//! On many cores the divider sits in one of the units that multiply and add, so neither peak alone is what a
+//! mixture can reach; hence the third figure, of both at once in the proportion wanted.
 
 use pulp::{Arch, Simd, WithSimd};
 use std::hint::black_box;

@@ -1,4 +1,5 @@
-//! Grid points against the bandwidth that copies of buffers reach: the floor of an evaluation is what it writes.
+//! Grid points against the bandwidth that copies of buffers reach: the floor of an evaluation is what it
+//! writes.
 
 use crate::evaluation::{PAPER, rates, surface};
 use crate::time::seconds;

@@ -1,4 +1,5 @@
-//! The scene of the frame measurements: bumpy bicubic sheets side by side, every third one a disc with a hole.
+//! The scene of the frame measurements: bumpy bicubic sheets side by side, every third one a disc with a
+//! hole.
 
 use crate::evaluation::surface;
 use chordal_brep::{Face, FaceGeometry, Model, Node, NodeId, Part, PartId, Source};
@@ -98,8 +99,9 @@ impl Scenario {
         (model, scene)
     }
 
-    /// The scene as text that tools/glu_bench.c reads: the number of surfaces and the box; then for each the control points along
-    /// each side, the knots, the homogeneous points, the number of loops and each loop's points.
+    /// The scene as text that tools/glu_bench.c reads: the number of surfaces and the box; then for each the
+    /// control points along each side, the knots, the homogeneous points, the number of loops and each loop's
+    /// points.
     pub fn to_text(&self) -> String {
         let points = || self.surfaces.iter().flat_map(|s| s.points());
         let low = points().fold(DVec3::INFINITY, |m, p| m.min(*p));

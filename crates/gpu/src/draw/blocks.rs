@@ -1,7 +1,9 @@
-//! Grids cut into blocks of cells, so that all faces of a batch are drawn by a few calls however many they are.
+//! Grids cut into blocks of cells, so that all faces of a batch are drawn by a few calls however many they
+//! are.
 //!
-//! A block is an instance: its record names the face, the placement and its first cell. All blocks of one shape share their
-//! indices, so that a corner within a block is calculated once. What of a block lies beyond its grid collapses to nothing.
+//! A block is an instance: its record names the face, the placement and its first cell. All blocks of one
+//! shape share their indices, so that a corner within a block is calculated once. What of a block lies beyond
+//! its grid collapses to nothing.
 
 use super::pipelines::bind_resources;
 use crate::device::Gpu;
@@ -23,7 +25,8 @@ const BORDERS: usize = 6;
 struct Block {
     face: u32,
     placement: u32,
-    /// The first cell: along u in the lower half, along v in the upper; of a border the number of its first piece.
+    /// The first cell: along u in the lower half, along v in the upper; of a border the number of its first
+    /// piece.
     first: u32,
     spare: u32,
 }
@@ -89,7 +92,8 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    /// Of faces (their numbers in the batch and the placements each is seen in), for the pipelines of faces and borders.
+    /// Of faces (their numbers in the batch and the placements each is seen in), for the pipelines of faces
+    /// and borders.
     pub fn new(
         gpu: &Gpu,
         pipelines: [&RenderPipeline; 2],

@@ -71,8 +71,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Looks at the points, all of which end up in the picture of `size` pixels with a margin; `zoom` above 1 comes
-    /// nearer. A camera at a place of its own is moved only where `fit` asks for it.
+    /// Looks at the points, all of which end up in the picture of `size` pixels with a margin; `zoom` above 1
+    /// comes nearer. A camera at a place of its own is moved only where `fit` asks for it.
     pub fn looking_at(
         view: View,
         projection: Projection,
@@ -126,7 +126,8 @@ impl Camera {
     }
 }
 
-/// From a view whose eye is at z = `distance`; `slopes` are those of the right and upper border. Depth 0 near and 1 far.
+/// From a view whose eye is at z = `distance`; `slopes` are those of the right and upper border. Depth 0 near
+/// and 1 far.
 fn perspective_matrix(slopes: [f64; 2], near: f64, far: f64, distance: f64) -> DMat4 {
     let depth = far / (far - near);
     DMat4::from_cols(

@@ -9,11 +9,13 @@ pub const PIXEL_ERROR: f64 = 0.5;
 const BORDER_STEPS: f64 = 64.0;
 /// Texels along a side of the texture of one face's trim, at least and at most.
 const TEXELS: [f64; 2] = [8.0, 2048.0];
-/// Pieces of a border that together are no longer than this many pixels are one; they serve until they look a pixel long.
+/// Pieces of a border that together are no longer than this many pixels are one; they serve until they look a
+/// pixel long.
 const JOINED: f64 = 0.5;
 /// How many times as fine as needed samples may be before they are made anew.
 const TOO_FINE: f64 = 2.0;
-/// How many times as fine as needed they are made where the view moves, so that the next frames need no new ones.
+/// How many times as fine as needed they are made where the view moves, so that the next frames need no new
+/// ones.
 const RESERVE: f64 = 1.25;
 
 /// Samples of one face.
@@ -52,7 +54,8 @@ impl Choice {
         Self::of(face, self.error / (RESERVE * RESERVE))
     }
 
-    /// True where samples chosen so are fine enough for what is `needed`, and not much finer. Textures count where there are any.
+    /// True where samples chosen so are fine enough for what is `needed`, and not much finer. Textures count
+    /// where there are any.
     pub fn serves(&self, needed: &Self, textured: bool) -> bool {
         let serves = |has: f64, needs: f64| has >= needs && has <= (TOO_FINE * needs).ceil();
         let all = |has: [f64; 2], needs: [f64; 2]| (0..2).all(|axis| serves(has[axis], needs[axis]));
@@ -64,7 +67,8 @@ impl Choice {
 }
 
 impl Choice {
-    /// The smallest and the largest error that samples chosen so serve, in the part's units; nothing between the two is in doubt.
+    /// The smallest and the largest error that samples chosen so serve, in the part's units; nothing between
+    /// the two is in doubt.
     pub fn errors_served(&self, face: &TrimmedFace, textured: bool) -> [f64; 2] {
         let [mut low, mut high] = errors_served(face, self.steps);
         let mut narrow = |least: f64, most: f64| (low, high) = (low.max(least), high.min(most));
@@ -106,7 +110,8 @@ impl TrimmedFace {
         }
     }
 
-    /// Per piece of the border how much its image bends, in the part's units, its parameter running over 0..=1.
+    /// Per piece of the border how much its image bends, in the part's units, its parameter running over
+    /// 0..=1.
     fn border_bends(&self) -> impl Iterator<Item = f64> {
         let [uu, uv, vv] = self.bends;
         let (size, stretch) = (self.uv.size(), DVec2::from(self.stretch));
@@ -131,7 +136,8 @@ impl TrimmedFace {
         self.shortest_piece = lengths.fold(f64::INFINITY, f64::min);
     }
 
-    /// Pairs of native parameters, the ends of short pieces of the border. Pieces that are short enough together are one.
+    /// Pairs of native parameters, the ends of short pieces of the border. Pieces that are short enough
+    /// together are one.
     pub(crate) fn border(&self, error: f64) -> Vec<DVec2> {
         let (size, stretch) = (self.uv.size(), DVec2::from(self.stretch));
         let native = |p: DVec2| self.uv.clamp(self.uv.min + p * size);

@@ -1,5 +1,5 @@
-// Exact faces: grids of points that a kernel has left in a buffer, drawn from there, trimmed at every sample and lit by the exact
-// normal of every pixel.
+// Exact faces: grids of points that a kernel has left in a buffer, drawn from there, trimmed at every sample
+// and lit by the exact normal of every pixel.
 
 struct Face {
     offset: vec3<f32>,   // local coordinates to the part's: offset + size * local
@@ -29,7 +29,8 @@ struct Face {
 
 @group(0) @binding(2) var<storage, read> faces: array<Face>;
 @group(0) @binding(3) var<storage, read> points: array<f32>;
-// Of every column and row of a grid the place in the face's square, by native and by NURBS parameters; and the spans of faces.
+// Of every column and row of a grid the place in the face's square, by native and by NURBS parameters; and
+// the spans of faces.
 @group(0) @binding(4) var<storage, read> places: array<vec2<f32>>;
 @group(0) @binding(7) var trims: texture_2d_array<f32>;
 @group(0) @binding(8) var trim_sampler: sampler;
@@ -154,8 +155,8 @@ fn covered(in: ExactOut, front: bool, inside: u32) -> Covered {
     return Covered(vec4<f32>(lit(in.color.rgb, normal_in(in), in.p), 1.0), samples);
 }
 
-// What a fragment knows of its place and the normal it is lit by, as numbers: for the tests, which compare them with double
-// precision.
+// What a fragment knows of its place and the normal it is lit by, as numbers: for the tests, which compare
+// them with double precision.
 struct Probed {
     @location(0) place: vec4<f32>,
     @location(1) normal: vec4<f32>,
@@ -194,9 +195,9 @@ struct BorderOut {
     @location(2) @interpolate(flat) color: vec4<f32>,
 }
 
-// A strip along the border of a face, as wide as neighbours that are sampled differently may stand apart, and a pixel
-// behind both: it is seen in cracks alone. That of a face turned away lies further back, so that silhouettes are drawn in
-// the colours of what faces the eye.
+// A strip along the border of a face, as wide as neighbours that are sampled differently may stand apart, and
+// a pixel behind both: it is seen in cracks alone. That of a face turned away lies further back, so that
+// silhouettes are drawn in the colours of what faces the eye.
 @vertex
 fn border_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> BorderOut {
     let block = block_of(instance);

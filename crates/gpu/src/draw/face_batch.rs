@@ -1,6 +1,8 @@
-//! What one re-evaluation leaves on the device: points, the trim texture, and how the faces in them are drawn.
+//! What one re-evaluation leaves on the device: points, the trim texture, and how the faces in them are
+//! drawn.
 //!
-//! Nothing of a batch changes but by an edit of its surfaces; faces that a later view needs otherwise go into a later one.
+//! Nothing of a batch changes but by an edit of its surfaces; faces that a later view needs otherwise go into
+//! a later one.
 
 use super::blocks::{Blocks, Cells};
 use super::choice::Choice;
@@ -112,7 +114,8 @@ pub(crate) struct FaceBatch {
 }
 
 impl FaceBatch {
-    /// Evaluates faces, all of one store and no more than [`most_points`] of them, for pictures trimmed in one way.
+    /// Evaluates faces, all of one store and no more than [`most_points`] of them, for pictures trimmed in
+    /// one way.
     pub fn new(
         gpu: &Gpu,
         renderer: &FaceRenderer,

@@ -5,7 +5,8 @@ use crate::kernels::bezier::{Cell, tangents_at};
 use crate::kernels::normal::unit_normal;
 use glam::Vec3;
 
-/// Below this square of the sine and of the ratio of the tangents' lengths a normal is rounding to a hundredth.
+/// Below this square of the sine and of the ratio of the tangents' lengths a normal is rounding to a
+/// hundredth.
 const POLE: f32 = 1e-8;
 
 /// The span among `count` from record `first`, and the place in it.

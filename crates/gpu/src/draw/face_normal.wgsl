@@ -1,14 +1,17 @@
-// The exact normal of a face at a place: found in every pixel from the Bézier net of the span that the place lies in.
+// The exact normal of a face at a place: found in every pixel from the Bézier net of the span that the place
+// lies in.
 
 @group(0) @binding(9) var<storage, read> net: array<vec4<f32>>;
 
-// Below this square of the sine and of the ratio of the tangents' lengths a normal is rounding to a hundredth.
+// Below this square of the sine and of the ratio of the tangents' lengths a normal is rounding to a
+// hundredth.
 const POLE: f32 = 1e-8;
 
 // A span among those of a face along one side, and the place in it.
 struct Place { span: u32, t: f32 }
 
-// `count` spans from record `first` of `places`: where each begins in the face's square, and one over its length there.
+// `count` spans from record `first` of `places`: where each begins in the face's square, and one over its
+// length there.
 fn place_of(first: u32, count: u32, at: f32) -> Place {
     var low = 0u;
     var high = count;

@@ -1,7 +1,8 @@
 //! Exact faces drawn again and again: what a frame can use of those before it is not evaluated anew.
 //!
 //! 1. Placements and faces that the view cannot show are rejected by bounds (`visible.rs`).
-//! 2. Each face that is left is asked how fine it must be (`choice.rs`). Where samples that are there serve, they are kept.
+//! 2. Each face that is left is asked how fine it must be (`choice.rs`). Where samples that are there serve,
+//!    they are kept.
 //! 3. The others are evaluated together, in one dispatch for each store, and become a batch (`batch.rs`).
 //! 4. Batches that hold little of use are evaluated anew with them, so that there are never many.
 
@@ -89,7 +90,8 @@ type Key = ((usize, i32), usize);
 /// A face that is drawn, and the placements it is seen in.
 type DrawnFace = (Key, Range<u32>);
 
-/// What options showed: a frame with the same needs neither the placements composed with the camera again nor their bytes sent.
+/// What options showed: a frame with the same needs neither the placements composed with the camera again nor
+/// their bytes sent.
 #[derive(Debug)]
 struct Seen {
     options: RenderOptions,
@@ -104,7 +106,8 @@ impl<'a> FaceScene<'a> {
     /// Uploads what does not change with the view. `scene` and `model` are those that `exact` was made of.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] for a face beyond what the device binds at once, and what [`Gpu::watched`] gives.
+    /// [`GpuError::TooLarge`] for a face beyond what the device binds at once, and what [`Gpu::watched`]
+    /// gives.
     pub fn new(
         gpu: &Gpu,
         mut exact: TrimmedModel,
@@ -158,9 +161,10 @@ impl<'a> FaceScene<'a> {
         self.batches.values().map(|g| g.points).sum()
     }
 
-    /// Puts a surface of the same degrees and counts in the place of that of face `face` (a number among the exact faces of
-    /// `part`), and uploads it; the bytes that went. Trims keep their place in the parameters; lines and bounds that other faces
-    /// have of it do not move, so that pictures of moving surfaces leave lines out.
+    /// Puts a surface of the same degrees and counts in the place of that of face `face` (a number among the
+    /// exact faces of `part`), and uploads it; the bytes that went. Trims keep their place in the parameters;
+    /// lines and bounds that other faces have of it do not move, so that pictures of moving surfaces leave
+    /// lines out.
     ///
     /// # Errors
     /// [`GpuError::NoSuchSurface`], [`GpuError::OtherShape`], and what [`Gpu::watched`] gives.
@@ -432,7 +436,8 @@ impl<'a> FaceScene<'a> {
         Ok(points)
     }
 
-    /// Batches that are to be evaluated anew: of too many small ones the smaller half, and those that are mostly unused.
+    /// Batches that are to be evaluated anew: of too many small ones the smaller half, and those that are
+    /// mostly unused.
     fn worn_batches(&self, gpu: &Gpu) -> BTreeSet<u64> {
         let small = |g: &FaceBatch| 2 * g.points < most_points(gpu);
         let mut by_use: Vec<(usize, u64)> =

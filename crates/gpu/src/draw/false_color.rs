@@ -14,7 +14,8 @@ pub(crate) fn mean_curvature(surface: &Surface, uv: DVec2, normal: DVec3) -> Opt
     regular.then(|| -(e * n - 2.0 * f * m + g * l) / (2.0 * area)).filter(|h| h.is_finite())
 }
 
-/// The distance of a point of a facet from the surface along the surface's normal at the facet's parameters there.
+/// The distance of a point of a facet from the surface along the surface's normal at the facet's parameters
+/// there.
 pub(crate) fn distance(surface: &Surface, uv: DVec2, p: DVec3) -> f64 {
     let offset = surface.point(uv) - p;
     surface.normal(uv).map_or(offset.length(), |n| offset.dot(n).abs())

@@ -63,7 +63,8 @@ pub(crate) fn scenery_of(
     (Scenery { shapes, placed }, legend)
 }
 
-/// The shape of a part and, of measured styles, the value at each vertex; of the faces only those of `only`, which rise.
+/// The shape of a part and, of measured styles, the value at each vertex; of the faces only those of `only`,
+/// which rise.
 fn shape_of(
     part: &ScenePart,
     exact: &Part,
@@ -108,9 +109,10 @@ fn part_points(part: &ScenePart) -> impl Iterator<Item = DVec3> {
     part.mesh.positions.iter().chain(part.pass_through.iter().flat_map(|t| &t.points)).copied()
 }
 
-/// Points that reach as far as the scene does, in millimetres: the vertices of all placements, of large scenes the corners of
-/// their boxes, and of many those that reach furthest in some direction. What is left out then reaches beyond the others by less than
-/// a hundredth of the scene's size, which pictures have as a margin.
+/// Points that reach as far as the scene does, in millimetres: the vertices of all placements, of large
+/// scenes the corners of their boxes, and of many those that reach furthest in some direction. What is left
+/// out then reaches beyond the others by less than a hundredth of the scene's size, which pictures have as a
+/// margin.
 pub fn scene_outline(scene: &Scene) -> Vec<DVec3> {
     /// More vertices than this are stood for by boxes.
     const MANY: usize = 2_000_000;
@@ -132,10 +134,12 @@ pub fn scene_outline(scene: &Scene) -> Vec<DVec3> {
     furthest(points)
 }
 
-/// Of many points those that reach furthest in directions all over the sphere, each once: every frame looks at all that are left.
+/// Of many points those that reach furthest in directions all over the sphere, each once: every frame looks
+/// at all that are left.
 fn furthest(points: Vec<DVec3>) -> Vec<DVec3> {
     const MANY: usize = 50_000;
-    /// Neighbours are some 0.16 radians apart, and what lies between two is missed by 1 - cos 0.11 of the size at most.
+    /// Neighbours are some 0.16 radians apart, and what lies between two is missed by 1 - cos 0.11 of the
+    /// size at most.
     const DIRECTIONS: usize = 500;
     if points.len() <= MANY {
         return points;
@@ -313,7 +317,8 @@ fn paint(painted: &mut [(Shape, Vec<f64>)], style: Style) -> Option<Legend> {
     let legend = match style {
         Style::Error => Legend { low: 0.0, high: sizes().fold(0.0, f64::max) },
         Style::Curvature => {
-            // Nine tenths of the vertices of bent faces set the range: few sharp fillets must not make the rest look flat.
+            // Nine tenths of the vertices of bent faces set the range: few sharp fillets must not make the
+            // rest look flat.
             let mut bent: Vec<f64> = sizes().filter(|v| *v > 0.0).collect();
             bent.sort_unstable_by(f64::total_cmp);
             let high = bent.get(bent.len() * 9 / 10).copied().unwrap_or(1.0);
@@ -335,7 +340,8 @@ fn paint(painted: &mut [(Shape, Vec<f64>)], style: Style) -> Option<Legend> {
 mod tests {
     use super::*;
 
-    /// A thick shell of points: what is kept reaches as far as all of them but for less than a hundredth, in any direction.
+    /// A thick shell of points: what is kept reaches as far as all of them but for less than a hundredth, in
+    /// any direction.
     #[test]
     fn what_reaches_furthest_is_kept() {
         let at = |k: f64| {

@@ -72,14 +72,16 @@ pub enum Trim {
     /// Every sample of a pixel against the curves themselves, at any zoom.
     #[default]
     Exact,
-    /// By a texture drawn for the view, in which loops are counted even and odd (Krishnamurthy, Khardekar, McMains 2009).
+    /// By a texture drawn for the view, in which loops are counted even and odd (Krishnamurthy, Khardekar,
+    /// McMains 2009).
     Texture,
 }
 
 /// The normals that exact faces are lit by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Normals {
-    /// Evaluated in every pixel; interpolated at poles, and on surfaces whose Bézier nets the device cannot bind.
+    /// Evaluated in every pixel; interpolated at poles, and on surfaces whose Bézier nets the device cannot
+    /// bind.
     #[default]
     Exact,
     /// Those of the samples, interpolated between them.

@@ -57,8 +57,9 @@ impl Picture {
         Ok(Self { width: info.width, height: info.height, pixels })
     }
 
-    /// How different two pictures of one size look: for every pixel the smallest difference of colour (largest channel, 0..=255)
-    /// to any pixel of the other within one pixel, both ways. What moved by a pixel is the same.
+    /// How different two pictures of one size look: for every pixel the smallest difference of colour
+    /// (largest channel, 0..=255) to any pixel of the other within one pixel, both ways. What moved by a
+    /// pixel is the same.
     ///
     /// Returns the share of pixels that differ by more than `threshold`; 1 where the sizes differ.
     pub fn difference(&self, other: &Self, threshold: u8) -> f64 {

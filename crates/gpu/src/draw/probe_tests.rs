@@ -150,12 +150,13 @@ fn turn(outcome: &Meshed, camera: &Camera, part: usize) -> DMat3 {
     view.inverse().transpose() * view.determinant().signum()
 }
 
-/// The exact unit normal of a face at a place of its square, and how far that of a pixel may be from it, radians: rounding of the
-/// tangents, by the parameters of their span, and of the place.
+/// The exact unit normal of a face at a place of its square, and how far that of a pixel may be from it,
+/// radians: rounding of the tangents, by the parameters of their span, and of the place.
 ///
-/// Each homogeneous derivative is a sum of differences that carry 12 n + 4 roundings of control points up to √3 from the
-/// middle (as in `SurfaceEntry::point_bound`), times the degree; the quotient has as many again of the point, and the weights may
-/// be ρ times smaller than the largest: √3 ρ p (36 n + 24) units. The place is rounded to 8 units of the face's square.
+/// Each homogeneous derivative is a sum of differences that carry 12 n + 4 roundings of control points up to
+/// √3 from the middle (as in `SurfaceEntry::point_bound`), times the degree; the quotient has as many again
+/// of the point, and the weights may be ρ times smaller than the largest: √3 ρ p (36 n + 24) units. The place
+/// is rounded to 8 units of the face's square.
 fn normal_in_double(face: &TrimmedFace, entry: &crate::SurfaceEntry, spot: DVec2) -> Option<(DVec3, f64)> {
     let low = face.parameters.nurbs_from_native(face.uv.min);
     let over = face.parameters.nurbs_from_native(face.uv.max) - low;
@@ -182,8 +183,9 @@ fn normal_in_double(face: &TrimmedFace, entry: &crate::SurfaceEntry, spot: DVec2
     (bound < 0.1).then(|| (n.normalize() * outside, bound))
 }
 
-/// In every pixel of pictures that are sampled coarsely the normal is that of the surface, within the bound of single precision:
-/// spheres, tori, a rational duck, splines up to degree 100. Interpolated ones are far from it.
+/// In every pixel of pictures that are sampled coarsely the normal is that of the surface, within the bound
+/// of single precision: spheres, tori, a rational duck, splines up to degree 100. Interpolated ones are far
+/// from it.
 #[test]
 fn normals_of_pixels_are_those_of_the_surface() {
     if no_gpu() {
@@ -231,8 +233,8 @@ fn normals_of_pixels_are_those_of_the_surface() {
     }
 }
 
-/// The place itself is where the pixel looks: on a sphere the normals are those of the points that a pixel's ray meets, within the
-/// error of half a pixel and the half that is allowed to the picture.
+/// The place itself is where the pixel looks: on a sphere the normals are those of the points that a pixel's
+/// ray meets, within the error of half a pixel and the half that is allowed to the picture.
 #[test]
 fn normals_of_a_sphere_are_those_that_its_pixels_look_at() {
     if no_gpu() {

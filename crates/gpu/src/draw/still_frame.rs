@@ -1,4 +1,5 @@
-//! Frames that show all of a model and need nothing but what the frame before them drew: no face is looked at.
+//! Frames that show all of a model and need nothing but what the frame before them drew: no face is looked
+//! at.
 
 use super::frame_counts::FrameCounts;
 use super::visible::{Level, Visible};
@@ -21,7 +22,8 @@ struct StillLevel {
 }
 
 impl StillFrame {
-    /// Of a frame; `served` says of a level between which errors the samples of each face serve, if all faces have samples.
+    /// Of a frame; `served` says of a level between which errors the samples of each face serve, if all faces
+    /// have samples.
     pub fn of(
         visible: &Visible,
         counts: &FrameCounts,
@@ -44,8 +46,8 @@ impl StillFrame {
         Some(Self { levels, counts: FrameCounts { evaluated: 0, points: 0, ..*counts } })
     }
 
-    /// The counts of a frame that needs nothing else; `closed` says which parts may have faces that are left out for showing
-    /// their backs.
+    /// The counts of a frame that needs nothing else; `closed` says which parts may have faces that are left
+    /// out for showing their backs.
     pub fn counts(&self, visible: &Visible, leave_out_backs: bool, closed: &[bool]) -> Option<FrameCounts> {
         let same = |(was, is): (&StillLevel, &Level)| {
             (was.shape, was.class, &was.placed) == (is.shape, is.class, &is.placed)

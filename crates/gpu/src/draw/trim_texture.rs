@@ -1,10 +1,12 @@
-//! The trim texture of Krishnamurthy, Khardekar and McMains 2009, section 7: loops as fans of triangles from one point,
-//! drawn so that each turns what it covers, several faces to a texture through its colour channels.
+//! The trim texture of Krishnamurthy, Khardekar and McMains 2009, section 7: loops as fans of triangles from
+//! one point, drawn so that each turns what it covers, several faces to a texture through its colour
+//! channels.
 //!
-//! 1. Each face asks for a rectangle of texels; rectangles are packed onto planes, four planes (the channels) a layer.
+//! 1. Each face asks for a rectangle of texels; rectangles are packed onto planes, four planes (the channels)
+//!    a layer.
 //! 2. Each piece of its loops is cut into chords that keep within an eighth of a texel.
-//! 3. One pass a layer draws all fans, four samples a texel. Triangles turn 0 into 1 and 1 into 0 at every sample; the texture
-//!    keeps the share of the samples that are inside.
+//! 3. One pass a layer draws all fans, four samples a texel. Triangles turn 0 into 1 and 1 into 0 at every
+//!    sample; the texture keeps the share of the samples that are inside.
 //! 4. Drawing a face asks its channel between the texels and discards what has less than a half.
 //!
 //! Unlike the exact test it has the resolution that it was made for: closer up, curves show the texels.
@@ -225,7 +227,8 @@ fn fans_of(faces: &[Trimmed], slots: &[Slot], layer: u32) -> Vec<Fan> {
     fans
 }
 
-/// Packs the wishes, at half their size and again where they take too many layers: side of a layer, layers, slots.
+/// Packs the wishes, at half their size and again where they take too many layers: side of a layer, layers,
+/// slots.
 fn pack_within(wishes: &[[f64; 2]], page_limit: u32, layer_limit: u32) -> (u32, u32, Vec<Slot>) {
     let mut scale = 1.0;
     loop {
@@ -247,7 +250,8 @@ fn pack_within(wishes: &[[f64; 2]], page_limit: u32, layer_limit: u32) -> (u32, 
     }
 }
 
-/// Puts rectangles on shelves of planes of `page` × `page`, the tallest first; the number of planes, and a slot for each.
+/// Puts rectangles on shelves of planes of `page` × `page`, the tallest first; the number of planes, and a
+/// slot for each.
 fn pack(sizes: &[[u32; 2]], page: u32) -> (u32, Vec<Slot>) {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&k| std::cmp::Reverse(sizes[k][1]));

@@ -1,6 +1,6 @@
-// The paper's trim texture: of every trimming curve a fan of triangles from one corner of the face's square. Each triangle turns
-// what it covers from 0 to 1 and back, so that 1 is left where a point lies within an odd number of loops. Blending does the
-// turning; each face has a rectangle of one colour channel.
+// The paper's trim texture: of every trimming curve a fan of triangles from one corner of the face's square.
+// Each triangle turns what it covers from 0 to 1 and back, so that 1 is left where a point lies within an odd
+// number of loops. Blending does the turning; each face has a rectangle of one colour channel.
 
 // Two vectors a piece: its four x, its four y.
 @group(0) @binding(0) var<storage, read> cubics: array<vec4<f32>>;

@@ -23,8 +23,8 @@ fn polygon(corners: &[[f64; 2]]) -> Vec<Cubic> {
     (0..n).map(|i| Cubic::line(DVec2::from(corners[i]), DVec2::from(corners[(i + 1) % n]))).collect()
 }
 
-/// Holes within holes, a concave polygon with a notch that reaches past the others, a star that crosses itself, and circles in
-/// a row: what GLU gets wrong among them.
+/// Holes within holes, a concave polygon with a notch that reaches past the others, a star that crosses
+/// itself, and circles in a row: what GLU gets wrong among them.
 fn zoo() -> Vec<Vec<Cubic>> {
     let middle = DVec2::splat(0.5);
     let star: Vec<[f64; 2]> = (0..5)

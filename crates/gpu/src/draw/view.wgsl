@@ -38,7 +38,8 @@ fn is_cut(p: vec3<f32>) -> bool {
     return dot(view.section.xyz, p) > view.section.w && dot(view.section.xyz, view.section.xyz) > 0.0;
 }
 
-// A key light over the left shoulder, a weak one from below right, sky and ground; both sides of a face are lit.
+// A key light over the left shoulder, a weak one from below right, sky and ground; both sides of a face are
+// lit.
 fn lit(color: vec3<f32>, direction: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
     let e = towards_eye(p);
     // On the very tip of a cone there is no normal.
@@ -53,10 +54,11 @@ fn lit(color: vec3<f32>, direction: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
     return color * (sky + diffuse) + vec3<f32>(shine);
 }
 
-// Which of a pixel's four samples a face of this opacity covers: stochastic transparency (Enderton, Sintorn, Shirley, Luebke 2010)
-// with patterns of 4 × 4 pixels in place of noise, so that the order of drawing does not matter. From pixel to pixel the samples
-// turn by as much as one of 16 patterns says: over two faces of different patterns, as over front and back of one, about every choice of
-// one meets every choice of the other.
+// Which of a pixel's four samples a face of this opacity covers: stochastic transparency (Enderton, Sintorn,
+// Shirley, Luebke 2010) with patterns of 4 × 4 pixels in place of noise, so that the order of drawing does
+// not matter. From pixel to pixel the samples turn by as much as one of 16 patterns says: over two faces of
+// different patterns, as over front and back of one, about every choice of one meets every choice of the
+// other.
 fn veil(opacity: f32, at: vec4<f32>, front: bool, seed: u32) -> u32 {
     if opacity >= 1.0 {
         return 15u;
@@ -72,7 +74,8 @@ fn veil(opacity: f32, at: vec4<f32>, front: bool, seed: u32) -> u32 {
     return ((samples << first) | (samples >> (4u - first))) & 15u;
 }
 
-// The clip position of a point of view space with the depth of the one that lies so many pixels nearer to the eye.
+// The clip position of a point of view space with the depth of the one that lies so many pixels nearer to the
+// eye.
 fn nearer(clip: vec4<f32>, p: vec3<f32>, pixels: f32) -> vec4<f32> {
     let scale = select(1.0, (view.eye - p.z) / view.eye, view.eye > 0.0);
     let moved = view.projection * vec4<f32>(p + towards_eye(p) * (pixels * view.depth.x * scale), 1.0);

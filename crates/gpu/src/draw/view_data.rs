@@ -91,8 +91,8 @@ impl Standing {
         }
     }
 
-    /// As the shaders read it; composed in double precision, so that places far from the origin keep their digits. The axes of a view
-    /// are at right angles and of length 1: they turn normals as they turn points.
+    /// As the shaders read it; composed in double precision, so that places far from the origin keep their
+    /// digits. The axes of a view are at right angles and of length 1: they turn normals as they turn points.
     pub fn in_view(&self, camera: &Camera) -> PlacementData {
         let normal = camera.view.matrix3 * self.normal;
         PlacementData {

@@ -1,4 +1,5 @@
-//! What a view may show: rejection of parts and faces by bounds that hold them, and of backs by cones of normals.
+//! What a view may show: rejection of parts and faces by bounds that hold them, and of backs by cones of
+//! normals.
 
 use super::camera::Camera;
 use super::choice::PIXEL_ERROR;
@@ -97,7 +98,8 @@ impl Eye {
         };
         let eye = from_view.transform_point3(DVec3::Z * distance);
         let nearest = to_view.transform_point3(middle).z + radius * scale_of(to_view);
-        // The picture begins at a thousandth of the distance at most, where it does not begin before all parts.
+        // The picture begins at a thousandth of the distance at most, where it does not begin before all
+        // parts.
         let clear = nearest < distance * (1.0 - 2e-3);
         if clear && eye.distance(middle) > radius { Self::At(eye) } else { Self::Inside }
     }
@@ -122,7 +124,8 @@ pub(crate) struct Level {
 const ASKED: usize = 16;
 
 impl Level {
-    /// Whether some placement may show the face: in the picture, and, where backs are left out, from its outside.
+    /// Whether some placement may show the face: in the picture, and, where backs are left out, from its
+    /// outside.
     pub fn shows(&self, frustum: &Frustum, face: &TrimmedFace, leave_out_backs: bool) -> Shown {
         if self.whole && !(leave_out_backs && face.outward.is_some()) {
             return Shown::Yes;

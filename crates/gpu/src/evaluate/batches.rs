@@ -1,7 +1,8 @@
 //! Samples cut into batches, none of whose buffers is larger than the device binds at once.
 //!
-//! A request stays whole where it fits into a batch by itself, so that who draws a grid finds it in one buffer; one that
-//! does not is cut between its heads, which hold [`crate::samples::HEAD_POINTS`] points at most.
+//! A request stays whole where it fits into a batch by itself, so that who draws a grid finds it in one
+//! buffer; one that does not is cut between its heads, which hold [`crate::samples::HEAD_POINTS`] points at
+//! most.
 
 use super::plan::{Variant, Wanted};
 use crate::layout::{Head, Row, Tile};

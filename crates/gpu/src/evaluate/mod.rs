@@ -1,4 +1,5 @@
-//! Evaluation behind one interface: five kernels, two ways to find spans, two precisions, on the device or by its twins.
+//! Evaluation behind one interface: five kernels, two ways to find spans, two precisions, on the device or by
+//! its twins.
 
 mod batches;
 mod on_device;

@@ -23,8 +23,8 @@ impl<R: Real> OnDevice<R> {
     /// Uploads the set.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where its control points or knots exceed what the device can bind at once, and what
-    /// [`Gpu::watched`] gives.
+    /// [`GpuError::TooLarge`] where its control points or knots exceed what the device can bind at once, and
+    /// what [`Gpu::watched`] gives.
     pub fn upload(gpu: &Gpu, set: &SurfaceSet<R>) -> Result<Self, GpuError> {
         gpu.watched("uploading surfaces", || {
             let spans = storage(gpu, "the knot spans", &set.spans)?;
@@ -41,7 +41,8 @@ impl<R: Real> OnDevice<R> {
         self.bytes
     }
 
-    /// Uploads of surface `index` of the set what an edit changed, and nothing else; returns the bytes that went.
+    /// Uploads of surface `index` of the set what an edit changed, and nothing else; returns the bytes that
+    /// went.
     ///
     /// # Errors
     /// [`GpuError::NoSuchSurface`], [`GpuError::Lost`].

@@ -78,8 +78,8 @@ impl Wanted {
 pub enum Search {
     /// Here, in double precision.
     Host,
-    /// On the device: single precision then also rounds the knots and the parameter, relative to the whole domain. Not for the
-    /// layouts that copy knots.
+    /// On the device: single precision then also rounds the knots and the parameter, relative to the whole
+    /// domain. Not for the layouts that copy knots.
     Device,
 }
 

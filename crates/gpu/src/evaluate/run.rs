@@ -66,10 +66,12 @@ impl<R: Real> KernelRunner<R> {
         })
     }
 
-    /// Uploads samples and makes room for the results. What is kept can be run again after an edit of the surfaces.
+    /// Uploads samples and makes room for the results. What is kept can be run again after an edit of the
+    /// surfaces.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where one list of points, or the knots of the set, exceed a binding; samples are split.
+    /// [`GpuError::TooLarge`] where one list of points, or the knots of the set, exceed a binding; samples
+    /// are split.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,10 +1,11 @@
 //! A cone of directions that holds every normal of a surface, proven from its control net.
 //!
-//! With positive weights that are products of one factor per row and one per column, the tangents along u lie in the convex cone
-//! of the net's legs along u: P_u is a sum of them with positive factors. If they keep within an angle α of an axis a and
-//! those along v within β of b, a normal n, being at right angles to one of each, has |n · a| ≤ sin α and |n · b| ≤ sin β. What of
-//! n lies in the plane of a and b is then at most √(sin²α + sin²β + 2 sin α sin β |cos θ|) / sin θ, θ the angle between a and
-//! b: the sine of its angle to a × b. (Sederberg and Meyers 1988 bound normals in the same way.)
+//! With positive weights that are products of one factor per row and one per column, the tangents along u lie
+//! in the convex cone of the net's legs along u: P_u is a sum of them with positive factors. If they keep
+//! within an angle α of an axis a and those along v within β of b, a normal n, being at right angles to one
+//! of each, has |n · a| ≤ sin α and |n · b| ≤ sin β. What of n lies in the plane of a and b is then at most
+//! √(sin²α + sin²β + 2 sin α sin β |cos θ|) / sin θ, θ the angle between a and b: the sine of its angle to a
+//! × b. (Sederberg and Meyers 1988 bound normals in the same way.)
 
 use chordal_nurbs::{DVec3, NurbsSurface};
 
@@ -19,8 +20,8 @@ pub struct Cone {
 const ROUNDING: f64 = 1e-6;
 
 impl Cone {
-    /// The narrowest about the sum of the directions; `None` where it is no narrower than a half space. Legs of no length have no
-    /// direction.
+    /// The narrowest about the sum of the directions; `None` where it is no narrower than a half space. Legs
+    /// of no length have no direction.
     fn of(legs: impl Iterator<Item = DVec3> + Clone) -> Option<Self> {
         let directions = legs.filter_map(DVec3::try_normalize);
         let axis = directions.clone().sum::<DVec3>().try_normalize()?;
@@ -33,7 +34,8 @@ impl Cone {
         if self.axis.dot(direction) < 0.0 { Self { axis: -self.axis, ..self } } else { self }
     }
 
-    /// True where every direction of the cone is at more than a right angle to all directions within `spread` of `to_eye`.
+    /// True where every direction of the cone is at more than a right angle to all directions within `spread`
+    /// of `to_eye`.
     pub fn turns_away(&self, to_eye: DVec3, spread: f64) -> bool {
         to_eye.angle_between(self.axis) > std::f64::consts::FRAC_PI_2 + self.angle + spread
     }

@@ -5,8 +5,8 @@ use chordal_mesh::PartMesh;
 use chordal_nurbs::{Curve, DVec3};
 use std::collections::BTreeMap;
 
-/// Of every pair of neighbouring samples of an edge, by the indices of their positions (lower first): the edge, and the
-/// number of the lower-numbered sample of the two.
+/// Of every pair of neighbouring samples of an edge, by the indices of their positions (lower first): the
+/// edge, and the number of the lower-numbered sample of the two.
 #[derive(Debug)]
 pub(crate) struct EdgeParameters<'a> {
     part: &'a Part,
@@ -28,8 +28,8 @@ impl<'a> EdgeParameters<'a> {
         Self { part, mesh, spans, parameters }
     }
 
-    /// The derivatives of the edge between two neighbouring samples, by a parameter that runs over 0..=1 from the first
-    /// to the second; `None` where they are no neighbours on an edge with a curve.
+    /// The derivatives of the edge between two neighbouring samples, by a parameter that runs over 0..=1 from
+    /// the first to the second; `None` where they are no neighbours on an edge with a curve.
     pub fn derivatives(&self, from: u32, to: u32) -> Option<[DVec3; 2]> {
         let &(edge, k) = self.spans.get(&[from.min(to), from.max(to)])?;
         let ts = self.parameters[edge].as_ref()?;
@@ -70,7 +70,8 @@ fn parameters(edge: &Edge, line: &[u32], mesh: &PartMesh) -> Option<Vec<f64>> {
     Some(ts)
 }
 
-/// The parameter of the point of the curve nearest to `p` near `guess`, by Newton's method between `low` and `high`.
+/// The parameter of the point of the curve nearest to `p` near `guess`, by Newton's method between `low` and
+/// `high`.
 fn nearest(curve: &Curve, p: DVec3, guess: f64, low: f64, high: f64) -> f64 {
     let mut t = guess;
     for _ in 0..16 {

@@ -1,11 +1,12 @@
 //! Twin of `trim.wgsl`, and the search structure that both read.
 //!
-//! Loops are cut into cubic Bézier pieces that rise in y. A face's unit square is cut into bands of y; each lists the
-//! pieces that reach into it. A point asks the pieces of its band only, and most of those are decided by their control
-//! points. Pieces share their ends to the bit and own their lower end only, so that a ray through a joint counts once.
+//! Loops are cut into cubic Bézier pieces that rise in y. A face's unit square is cut into bands of y; each
+//! lists the pieces that reach into it. A point asks the pieces of its band only, and most of those are
+//! decided by their control points. Pieces share their ends to the bit and own their lower end only, so that
+//! a ray through a joint counts once.
 //!
-//! A map of square cells over the unit square comes first: cells that no loop enters are known to be inside or outside as a
-//! whole. Only points in the others, a few in a hundred, ask for pieces.
+//! A map of square cells over the unit square comes first: cells that no loop enters are known to be inside
+//! or outside as a whole. Only points in the others, a few in a hundred, ask for pieces.
 
 use super::pieces::Cubic;
 
@@ -82,7 +83,8 @@ const SIDES: [f64; 2] = [16.0, 64.0];
 const PARTS: usize = 8;
 
 impl Map {
-    /// With the cells that loops enter marked, and those beside them within what single precision may move a curve.
+    /// With the cells that loops enter marked, and those beside them within what single precision may move a
+    /// curve.
     fn of(loops: &[Cubic]) -> Self {
         let side = (6.0 * (loops.len() as f64).sqrt()).clamp(SIDES[0], SIDES[1]) as usize;
         let mut map = Self { side, cells: vec![0; side * side] };
@@ -212,7 +214,8 @@ mod tests {
         }
     }
 
-    /// A concave polygon of straight pieces against the even-odd rule over its edges, at points level with its corners too.
+    /// A concave polygon of straight pieces against the even-odd rule over its edges, at points level with
+    /// its corners too.
     #[test]
     fn concave_polygons_are_what_the_crossing_rule_says() {
         let corners = [[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.5, 0.3], [0.5, 0.7], [0.3, 0.3], [0.1, 0.9]];

@@ -1,9 +1,10 @@
-// Whether a point of a face's unit square lies inside its loops: crossings of the ray towards +x with pieces of cubic
-// curves that rise in y, found through bands of y. Even and odd: holes within holes need no direction.
+// Whether a point of a face's unit square lies inside its loops: crossings of the ray towards +x with pieces
+// of cubic curves that rise in y, found through bands of y. Even and odd: holes within holes need no
+// direction.
 
 @group(0) @binding(5) var<storage, read> pieces: array<vec4<f32>>;
-// Per face: the side of its map, the map (two bits a cell: 0 outside, 1 inside, 2 to be asked), bands + 1 offsets into the list
-// of pieces, then that list.
+// Per face: the side of its map, the map (two bits a cell: 0 outside, 1 inside, 2 to be asked), bands + 1
+// offsets into the list of pieces, then that list.
 @group(0) @binding(6) var<storage, read> lists: array<u32>;
 
 // One coordinate of a cubic by its control values, at four parameters.
@@ -12,7 +13,8 @@ fn cubic(p: vec4<f32>, t: vec4<f32>) -> vec4<f32> {
     return ((p.x * s + 3.0 * p.y * t) * s + 3.0 * p.z * t * t) * s + p.w * t * t * t;
 }
 
-// The parameters at which a rising piece has four heights: Newton's steps kept within a bracket, halves where they leave it.
+// The parameters at which a rising piece has four heights: Newton's steps kept within a bracket, halves where
+// they leave it.
 fn at_heights(ys: vec4<f32>, heights: vec4<f32>) -> vec4<f32> {
     var low = vec4<f32>(0.0);
     var high = vec4<f32>(1.0);

@@ -1,8 +1,10 @@
-//! From the model and its mesh to exact faces: a NURBS form, and loops of cubic pieces in the face's unit square.
+//! From the model and its mesh to exact faces: a NURBS form, and loops of cubic pieces in the face's unit
+//! square.
 //!
-//! The mesh supplies what took care to find: the loops of every face in one chart of its parameters, seams and poles
-//! among them. Between two samples of an edge the loop is not the chord but a cubic with the directions that the edge's
-//! curve has there, carried into the parameters; its distance from the true curve falls with the fourth power of theirs.
+//! The mesh supplies what took care to find: the loops of every face in one chart of its parameters, seams
+//! and poles among them. Between two samples of an edge the loop is not the chord but a cubic with the
+//! directions that the edge's curve has there, carried into the parameters; its distance from the true curve
+//! falls with the fourth power of theirs.
 
 use super::cone::{Cone, normal_cone};
 use super::edges::EdgeParameters;
@@ -54,8 +56,8 @@ impl TrimmedFace {
 }
 
 impl TrimmedFace {
-    /// Takes another surface of the same shape of knots over the same parameters: how fine it must be sampled follows; its
-    /// back may be seen from now on.
+    /// Takes another surface of the same shape of knots over the same parameters: how fine it must be sampled
+    /// follows; its back may be seen from now on.
     pub(crate) fn replace_surface(&mut self, surface: &NurbsSurface) {
         let over = Surface::Nurbs(surface.clone());
         let low = self.parameters.nurbs_from_native(self.uv.min);
@@ -157,7 +159,8 @@ fn untrimmed(surface: &Surface, uv: UvBox) -> Option<TrimmedFace> {
     Some(face.with_border())
 }
 
-/// The sides of triangles that one triangle alone has, as curves in the unit square; none where they are its border.
+/// The sides of triangles that one triangle alone has, as curves in the unit square; none where they are its
+/// border.
 fn loops(surface: &Surface, of_face: &FaceMesh, edges: &EdgeParameters, uv: UvBox) -> Vec<Cubic> {
     let mut sides: BTreeMap<[u32; 2], (u32, [u32; 2])> = BTreeMap::new();
     for t in &of_face.triangles {
@@ -177,8 +180,8 @@ fn loops(surface: &Surface, of_face: &FaceMesh, edges: &EdgeParameters, uv: UvBo
         let [from, to] = [a, b].map(|i| &of_face.corners[i as usize]);
         let (p, q) = (unit(from.uv), unit(to.uv));
         let straight = line(p, q);
-        // Triangles about a pole have a corner there each, anywhere along the line that it is in the parameters. Their
-        // sides go to it straight, so that those of neighbours cancel, and then along it.
+        // Triangles about a pole have a corner there each, anywhere along the line that it is in the
+        // parameters. Their sides go to it straight, so that those of neighbours cancel, and then along it.
         let around = |end: DVec2, pole: DVec2, axis: usize| {
             let mut foot = pole;
             foot[axis] = end[axis];
@@ -231,8 +234,8 @@ fn bounds(surface: &NurbsSurface) -> Option<[DVec3; 2]> {
     Some([fold(DVec3::min)?, fold(DVec3::max)?])
 }
 
-/// The largest second derivatives at a few samples of every span and a fifth more, and the largest first ones times the
-/// sides of the box.
+/// The largest second derivatives at a few samples of every span and a fifth more, and the largest first ones
+/// times the sides of the box.
 fn bends(surface: &Surface, uv: UvBox, kinks: [&[f64]; 2]) -> ([f64; 3], [f64; 2]) {
     let samples = |axis: usize| {
         let count = (4 * (kinks[axis].len() + 1)).clamp(9, 65);

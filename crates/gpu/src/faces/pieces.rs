@@ -19,7 +19,8 @@ impl Cubic {
         Self { points: [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b] }
     }
 
-    /// From both ends and the derivatives there; the line where those reach further than curves between near samples do.
+    /// From both ends and the derivatives there; the line where those reach further than curves between near
+    /// samples do.
     pub fn hermite(a: DVec2, b: DVec2, at_a: DVec2, at_b: DVec2) -> Self {
         /// Times the chord: an arc of a quarter turn has 1.6.
         const LONGEST: f64 = 3.0;
@@ -107,8 +108,8 @@ impl Cubic {
         [blossom(from, from, from), blossom(from, from, to), blossom(from, to, to), blossom(to, to, to)]
     }
 
-    /// The pieces that rise in y, those that fall turned round: four x and four y. Level ones are left out; neighbours share
-    /// their ends to the bit.
+    /// The pieces that rise in y, those that fall turned round: four x and four y. Level ones are left out;
+    /// neighbours share their ends to the bit.
     pub fn rising(&self) -> Vec<[[f32; 4]; 2]> {
         let mut cuts = vec![0.0];
         cuts.extend(self.turns());

@@ -1,12 +1,13 @@
 //! How many samples a view needs: continuously, and in each direction by itself.
 //!
-//! A cell of h × k in the parameters, drawn as two triangles, departs from the surface by at most
-//! (h² |S_uu| + 2 h k |S_uv| + k² |S_vv|) / 8. Each direction gets half of what is allowed, after the mixed term has
+//! A cell of h × k in the parameters, drawn as two triangles, departs from the surface by at most (h² |S_uu|
+//! + 2 h k |S_uv| + k² |S_vv|) / 8. Each direction gets half of what is allowed, after the mixed term has
 //! been shared between the squares: 2 h k m ≤ m (r h² + k²/r) with r the ratio of the two.
 
 use super::model::TrimmedFace;
 
-/// Points of one face at most; a view that asks for more sees the difference only where the face fills it many times.
+/// Points of one face at most; a view that asks for more sees the difference only where the face fills it
+/// many times.
 const MOST: f64 = 2048.0;
 const MOST_POINTS: f64 = 400_000.0;
 
@@ -42,8 +43,8 @@ pub(crate) fn errors_served(face: &TrimmedFace, steps: [f64; 2]) -> [f64; 2] {
     [a.max(c), b.min(d)]
 }
 
-/// The face's parameters along u and v, native, in so many steps. Knot lines across which the surface has a kink are among
-/// them.
+/// The face's parameters along u and v, native, in so many steps. Knot lines across which the surface has a
+/// kink are among them.
 pub(crate) fn grid(face: &TrimmedFace, steps: [f64; 2]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| spread(face.uv.min[axis], face.uv.max[axis], &face.kinks[axis], steps[axis]))
 }

@@ -1,5 +1,6 @@
-// Knots "packed": four parameter values of one direction of one surface, each with its own copy of its knots, are the four
-// lanes of a vector. A row is such a pack: `span` is its degree, `window` and `basis` count vectors.
+// Knots "packed": four parameter values of one direction of one surface, each with its own copy of its knots,
+// are the four lanes of a vector. A row is such a pack: `span` is its degree, `window` and `basis` count
+// vectors.
 
 alias value = real4;
 

@@ -1,7 +1,8 @@
 // One pass of the paper's basis evaluation, from one degree to the next. Thread: one column of one row.
 //
-// The text after this one says how rows store their knots: `value` is what one row holds in one column (a number, or a vector
-// of four rows at once), `rows` and `windows` are its buffers, and `degree_of`, `parameter_of`, `first_knot` its access.
+// The text after this one says how rows store their knots: `value` is what one row holds in one column (a
+// number, or a vector of four rows at once), `rows` and `windows` are its buffers, and `degree_of`,
+// `parameter_of`, `first_knot` its access.
 
 @group(0) @binding(7) var<storage, read_write> basis: array<value>;
 
@@ -48,7 +49,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         if order + level <= degree {
             continue;
         }
-        // The plane starts as a copy of the functions themselves, as many levels before the last as its order.
+        // The plane starts as a copy of the functions themselves, as many levels before the last as its
+        // order.
         let plane = select(order, 0u, order + level == degree + 1u);
         let slope_a = quotient(lower(row, degree, plane, column), left);
         let slope_b = quotient(lower(row, degree, plane, column + 1u), right);

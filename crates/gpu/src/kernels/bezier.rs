@@ -60,7 +60,8 @@ impl<R: Real> Cell<R> {
     }
 }
 
-/// Two sums of one degree less over neighbouring terms: between them lies the value, and from one to the other goes the derivative.
+/// Two sums of one degree less over neighbouring terms: between them lies the value, and from one to the
+/// other goes the derivative.
 #[derive(Clone, Copy)]
 struct Pair<R> {
     low: V4<R>,

@@ -1,5 +1,5 @@
-// One Bézier net, summed by Horner's rule for Bernstein polynomials: no knots, no memory of its own, only positive terms.
-// `net`, which the text after this one binds, holds the control points, line by line along v.
+// One Bézier net, summed by Horner's rule for Bernstein polynomials: no knots, no memory of its own, only
+// positive terms. `net`, which the text after this one binds, holds the control points, line by line along v.
 
 // The terms of one difference of order k: its running sum and C(n-k, i) t^i.
 struct Horner { sum: real4, term: real }
@@ -42,7 +42,8 @@ fn line_of(start: u32, q: u32, t: real, planes: u32) -> Line {
 // One span of a surface: its first control point, its degrees, and a place in it.
 struct Cell { at: u32, p: u32, q: u32, t_u: real, t_v: real }
 
-// Two sums of one degree less over neighbouring terms: between them lies the value, and from one to the other goes the derivative.
+// Two sums of one degree less over neighbouring terms: between them lies the value, and from one to the other
+// goes the derivative.
 struct Pair { low: real4, high: real4, term: real }
 
 fn start_pair() -> Pair {

@@ -1,4 +1,5 @@
-// What all evaluation kernels share. `real` is f32 or f64, declared above this text by the host, with its vectors.
+// What all evaluation kernels share. `real` is f32 or f64, declared above this text by the host, with its
+// vectors.
 
 // One grid or list of points on one surface. Point (i, j) of a grid is output number first + i * height + j.
 struct Head {

@@ -9,7 +9,8 @@ alias Basis = array<real, 303>;
 var<private> bu: Basis;
 var<private> bv: Basis;
 
-// The recursion in place; derivatives by differencing the last levels. Denominators hold the span, so none is 0.
+// The recursion in place; derivatives by differencing the last levels. Denominators hold the span, so none is
+// 0.
 fn fill(span: Span, t: real, planes: u32, basis: ptr<private, Basis>) {
     let p = span.degree;
     for (var j = 0u; j <= p; j++) {

@@ -1,5 +1,5 @@
-//! One WGSL file per kernel, and next to each a CPU twin of the same name: the same arithmetic in the same order. In
-//! double precision, where nothing is fused, the two agree to the bit.
+//! One WGSL file per kernel, and next to each a CPU twin of the same name: the same arithmetic in the same
+//! order. In double precision, where nothing is fused, the two agree to the bit.
 
 pub(crate) mod basis_indexed;
 pub(crate) mod basis_packed;

@@ -1,4 +1,5 @@
-//! Twin of `normal.wgsl`: from homogeneous derivatives to the point, its tangents and the normal between them.
+//! Twin of `normal.wgsl`: from homogeneous derivatives to the point, its tangents and the normal between
+//! them.
 
 use super::vector::{V3, V4};
 use crate::real::Real;
@@ -17,7 +18,8 @@ pub(crate) fn tangents_of<R: Real>(h00: V4<R>, h10: V4<R>, h01: V4<R>) -> Tangen
     Tangents { p, du: (h10.xyz() - p * h10.w()) * by_w, dv: (h01.xyz() - p * h01.w()) * by_w }
 }
 
-/// The unit vector along du × dv; zero where its square is less than `least` of the longer one's fourth power.
+/// The unit vector along du × dv; zero where its square is less than `least` of the longer one's fourth
+/// power.
 pub(crate) fn unit_normal<R: Real>(t: &Tangents<R>, least: R) -> V3<R> {
     let (V3([ux, uy, uz]), V3([vx, vy, vz])) = (t.du, t.dv);
     let n = V3([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]);

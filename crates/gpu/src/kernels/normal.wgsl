@@ -9,8 +9,8 @@ fn tangents_of(h00: real4, h10: real4, h01: real4) -> Tangents {
     return Tangents(p, (h10.xyz - p * h10.w) * by_w, (h01.xyz - p * h01.w) * by_w);
 }
 
-// The unit vector along du × dv; 0 where its square is less than `least` of the longer one's fourth power: at a pole what should
-// be 0 is rounding, and a direction made of that is none.
+// The unit vector along du × dv; 0 where its square is less than `least` of the longer one's fourth power: at
+// a pole what should be 0 is rounding, and a direction made of that is none.
 //
 // Given by the span's parameters, no knot interval, however short, under- or overflows the product.
 fn unit_normal(t: Tangents, least: real) -> real3 {

@@ -27,7 +27,8 @@ fn sample_of(group: vec3<u32>, local: u32) -> Sample {
     return Sample(tile.head, head.row_u + i, head.row_v + j, at, i < head.width && j < head.height);
 }
 
-// The homogeneous derivatives of a surface by the parameters of its span, number of derivatives by u, then by v.
+// The homogeneous derivatives of a surface by the parameters of its span, number of derivatives by u, then by
+// v.
 struct Jet { h00: real4, h01: real4, h02: real4, h10: real4, h11: real4, h20: real4 }
 
 fn write3(at: u32, x: real3) {

@@ -1,7 +1,7 @@
 // Sums control points times basis functions. Thread: one point.
 //
-// The text after this one says where functions come from: `prepare` finds those of a sample, `along_u` and `along_v` give the
-// function, or its derivative of order `plane`, of one column.
+// The text after this one says where functions come from: `prepare` finds those of a sample, `along_u` and
+// `along_v` give the function, or its derivative of order `plane`, of one column.
 
 @compute @workgroup_size(64)
 fn points(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {

@@ -1,4 +1,5 @@
-//! Models of the corpus, read and meshed without the facade, so that this crate's tests need nothing that depends on it.
+//! Models of the corpus, read and meshed without the facade, so that this crate's tests need nothing that
+//! depends on it.
 
 use chordal_brep::{Color, Model};
 use chordal_mesh::{PartMesh, Scene, SceneNode, ScenePart};
@@ -52,7 +53,8 @@ fn mesh_all(model: &Model, tolerance: f64) -> (Scene, f64) {
     (scene(model, meshes), worst)
 }
 
-/// The largest scale of a part's placements, as far as one matrix tells: the length of its unit in millimetres.
+/// The largest scale of a part's placements, as far as one matrix tells: the length of its unit in
+/// millimetres.
 fn scale_of(model: &Model, part: usize) -> f64 {
     let placements = scene(model, vec![PartMesh::default(); model.parts.len()]).placements();
     let of_part = placements.iter().filter(|p| p.part == part);

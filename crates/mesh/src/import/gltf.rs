@@ -1,4 +1,5 @@
-//! glTF 2.0, binary (GLB) or as text: triangles of every placed mesh, in scene coordinates, with the face ids of `TM_brep_faces`.
+//! glTF 2.0, binary (GLB) or as text: triangles of every placed mesh, in scene coordinates, with the face ids
+//! of `TM_brep_faces`.
 
 use super::bytes::Cursor;
 use super::error::{AccessorFault, Fault, ImportFault};
@@ -10,8 +11,8 @@ use serde_json::Value;
 
 /// The most triangles that are read with every instance counted.
 ///
-/// Instances of instances let a file of a kilobyte state more triangles than any memory holds. A smaller limit would refuse
-/// large assemblies; a larger one would need over 10 GB.
+/// Instances of instances let a file of a kilobyte state more triangles than any memory holds. A smaller
+/// limit would refuse large assemblies; a larger one would need over 10 GB.
 pub(super) const MOST_TRIANGLES: u64 = 200_000_000;
 
 /// Reads a binary file (GLB): the JSON in its first chunk, the buffer in its second.

@@ -1,9 +1,9 @@
 //! Reading meshes back: STL, OBJ, PLY, GLB, glTF and 3MF as a soup of welded triangles.
 //!
-//! Points are welded where all bits of their coordinates agree, within one *domain* only: a solid of ASCII STL, an
-//! object of OBJ, a part of a PLY file that Chordal wrote, a placed mesh of glTF, a build item of 3MF, else the whole
-//! file. Parts that touch therefore stay separate. Memory is allocated by a header's count only if the length of the
-//! file confirms it.
+//! Points are welded where all bits of their coordinates agree, within one *domain* only: a solid of ASCII
+//! STL, an object of OBJ, a part of a PLY file that Chordal wrote, a placed mesh of glTF, a build item of
+//! 3MF, else the whole file. Parts that touch therefore stay separate. Memory is allocated by a header's
+//! count only if the length of the file confirms it.
 
 mod bytes;
 mod error;

@@ -1,4 +1,5 @@
-//! OBJ: positions, faces and objects. Normals, texture coordinates and materials are skipped; polygons become fans.
+//! OBJ: positions, faces and objects. Normals, texture coordinates and materials are skipped; polygons become
+//! fans.
 
 use super::bytes::{Cursor, number, text, words};
 use super::error::{Fault, ImportFault, ImportPlace};
@@ -60,7 +61,8 @@ fn vertex(word: &[u8], points: &[DVec3]) -> Option<DVec3> {
     points.get(usize::try_from(index).ok()?).copied()
 }
 
-/// Lines with the number of the first of each, counted from 1; those that end in a backslash are joined with the next.
+/// Lines with the number of the first of each, counted from 1; those that end in a backslash are joined with
+/// the next.
 fn logical_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, [u8]>)> {
     let mut cursor = Cursor { rest: bytes };
     let mut read = 0;

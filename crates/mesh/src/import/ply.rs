@@ -1,4 +1,5 @@
-//! PLY: ASCII or binary in either byte order; any scalar type for coordinates and indices; polygons become fans.
+//! PLY: ASCII or binary in either byte order; any scalar type for coordinates and indices; polygons become
+//! fans.
 
 use super::bytes::{Cursor, number, text, words};
 use super::error::{Fault, ImportFault, ImportPlace};

@@ -1,4 +1,5 @@
-//! 3MF: the meshes of every build item, through its components. Materials and other files in the archive are skipped.
+//! 3MF: the meshes of every build item, through its components. Materials and other files in the archive are
+//! skipped.
 
 use super::error::{Fault, ImportFault};
 use super::gltf::MOST_TRIANGLES;
@@ -10,8 +11,8 @@ use std::io::{Cursor, Read};
 
 /// The largest ratio of unpacked text to the whole file that is read.
 ///
-/// The XML of a mesh compresses by less than 30. A smaller limit could refuse honest files; without one a file of a kilobyte
-/// could fill the memory.
+/// The XML of a mesh compresses by less than 30. A smaller limit could refuse honest files; without one a
+/// file of a kilobyte could fill the memory.
 const MOST_RATIO: u64 = 200;
 
 /// The most components that are placed in all, for the reason of [`MOST_TRIANGLES`]: components may be empty.

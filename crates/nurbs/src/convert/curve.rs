@@ -7,12 +7,12 @@ use crate::{
 use glam::{DVec2, DVec3};
 
 impl Curve {
-    /// The exact NURBS form over `range`, which is also its domain. See [`Curve::nurbs_parameters`] for what becomes of
-    /// the parameters in between; gaps at the joints of composite curves are closed halfway.
+    /// The exact NURBS form over `range`, which is also its domain. See [`Curve::nurbs_parameters`] for what
+    /// becomes of the parameters in between; gaps at the joints of composite curves are closed halfway.
     ///
     /// # Errors
-    /// [`NurbsError::NoExactForm`] for offset curves and curves on surfaces, [`NurbsError::Unbounded`] where the range is
-    /// infinite, empty, or beyond the ends of an open curve.
+    /// [`NurbsError::NoExactForm`] for offset curves and curves on surfaces, [`NurbsError::Unbounded`] where
+    /// the range is infinite, empty, or beyond the ends of an open curve.
     pub fn to_nurbs(&self, range: Range) -> Result<NurbsCurve3, NurbsError> {
         checked(range)?;
         match self {

@@ -1,9 +1,9 @@
-//! NURBS approximations of curves and surfaces without an exact form: cubic Hermite interpolation, refined until
-//! samples agree.
+//! NURBS approximations of curves and surfaces without an exact form: cubic Hermite interpolation, refined
+//! until samples agree.
 //!
-//! Each piece takes over points and first derivatives (for surfaces also the twist) at its ends, so its error falls
-//! with the fourth power of its length. **The error is an estimate**: the largest difference at equal parameters among
-//! samples inside every piece, times a margin. It is no proof.
+//! Each piece takes over points and first derivatives (for surfaces also the twist) at its ends, so its error
+//! falls with the fourth power of its length. **The error is an estimate**: the largest difference at equal
+//! parameters among samples inside every piece, times a margin. It is no proof.
 
 use super::checked;
 use crate::{Curve, NurbsCurve3, NurbsError, NurbsSurface, Range, Surface, UvBox};
@@ -21,8 +21,9 @@ const MOST: usize = 128;
 const INSIDE: f64 = 1e-8;
 
 impl Curve {
-    /// A cubic spline with the same parameters that follows the curve over `range`, and an **estimate** of the largest
-    /// distance at equal parameters: within `tolerance` (model units) unless the limit of pieces is reached first.
+    /// A cubic spline with the same parameters that follows the curve over `range`, and an **estimate** of
+    /// the largest distance at equal parameters: within `tolerance` (model units) unless the limit of pieces
+    /// is reached first.
     ///
     /// # Errors
     /// [`NurbsError::Unbounded`] where the range is, [`NurbsError::NotFinite`] where the curve is.
@@ -62,9 +63,9 @@ impl Curve {
 }
 
 impl Surface {
-    /// A bicubic spline surface with the same parameters that follows this one over a finite box, and an **estimate** of
-    /// the largest distance at equal parameters: within `tolerance` (model units) unless the limit of pieces is reached
-    /// first.
+    /// A bicubic spline surface with the same parameters that follows this one over a finite box, and an
+    /// **estimate** of the largest distance at equal parameters: within `tolerance` (model units) unless the
+    /// limit of pieces is reached first.
     ///
     /// # Errors
     /// [`NurbsError::Unbounded`] where the box is, [`NurbsError::NotFinite`] where the surface is.
@@ -134,7 +135,8 @@ impl Surface {
                     .fold(0.0, f64::max);
                 let largest = inside.max(along_u).max(along_v);
                 found.largest = found.largest.max(largest);
-                // Whichever direction bends more is to blame for the inside; both where neither border shows it.
+                // Whichever direction bends more is to blame for the inside; both where neither border shows
+                // it.
                 let blame_u = if along_u >= 0.5 * along_v { largest } else { along_u };
                 let blame_v = if along_v >= 0.5 * along_u { largest } else { along_v };
                 found.rows[i] = found.rows[i].max(blame_u);

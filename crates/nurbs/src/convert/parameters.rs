@@ -4,13 +4,15 @@ use super::{LONGEST_ARC, LONGEST_HYPERBOLA, spans};
 use crate::{Curve, NurbsError, Range, Surface, UvBox};
 use glam::DVec2;
 
-/// The parameter of the NURBS form of a curve as a function of the curve's own. Increasing; the two agree at the ends.
+/// The parameter of the NURBS form of a curve as a function of the curve's own. Increasing; the two agree at
+/// the ends.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ParameterMap {
     /// Both parameters are the same.
     Identity,
-    /// Equal arcs of the angle `step` from `start` on: `m + h tan(θ/2)/tan(h/2)` in each, θ from its middle m, h = step/2.
+    /// Equal arcs of the angle `step` from `start` on: `m + h tan(θ/2)/tan(h/2)` in each, θ from its middle
+    /// m, h = step/2.
     Arcs {
         /// The first angle.
         start: f64,

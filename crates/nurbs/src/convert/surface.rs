@@ -5,12 +5,13 @@ use crate::{Frame, NurbsCurve, NurbsError, NurbsSurface, Surface, UvBox, Vector}
 use glam::{DVec2, DVec3};
 
 impl Surface {
-    /// The exact NURBS form over a finite box, which is also its domain. See [`Surface::nurbs_parameters`] for what
-    /// becomes of the parameters in between.
+    /// The exact NURBS form over a finite box, which is also its domain. See [`Surface::nurbs_parameters`]
+    /// for what becomes of the parameters in between.
     ///
     /// # Errors
-    /// [`NurbsError::NoExactForm`] for offsets of surfaces that are not elementary and for what rests on curves without an
-    /// exact form; [`NurbsError::Unbounded`] where the box is infinite, empty or beyond the domain.
+    /// [`NurbsError::NoExactForm`] for offsets of surfaces that are not elementary and for what rests on
+    /// curves without an exact form; [`NurbsError::Unbounded`] where the box is infinite, empty or beyond the
+    /// domain.
     pub fn to_nurbs(&self, uv: UvBox) -> Result<NurbsSurface, NurbsError> {
         let (u, v) = (uv.u(), uv.v());
         match self {

@@ -19,8 +19,8 @@ impl Curve {
         tidy(found, range)
     }
 
-    /// All knots, corners and joints strictly inside `range`, in increasing order: between two of them the curve
-    /// is one analytic piece.
+    /// All knots, corners and joints strictly inside `range`, in increasing order: between two of them the
+    /// curve is one analytic piece.
     pub fn all_breaks(&self, range: Range) -> Vec<f64> {
         let mut found = Vec::new();
         self.collect_breaks(range, ANY, &mut found);
@@ -98,8 +98,8 @@ pub(crate) fn tidy(mut breaks: Vec<f64>, range: Range) -> Vec<f64> {
     breaks
 }
 
-/// Lines of the parameter space of `surface` inside `uv` across which it may not be `continuity` times continuously
-/// differentiable: values of u, values of v.
+/// Lines of the parameter space of `surface` inside `uv` across which it may not be `continuity` times
+/// continuously differentiable: values of u, values of v.
 pub(crate) fn surface_lines(surface: &Surface, uv: UvBox, continuity: usize) -> [Vec<f64>; 2] {
     match surface {
         Surface::Extrusion { profile, .. } => {

@@ -38,7 +38,8 @@ impl Curve {
 }
 
 impl Curve {
-    /// A box that contains the curve over `range`, found quickly: of free-form curves that of all control points.
+    /// A box that contains the curve over `range`, found quickly: of free-form curves that of all control
+    /// points.
     pub fn loose_box(&self, range: Range) -> Box3 {
         match self {
             Curve::Nurbs(curve) if curve.weights().is_none_or(|w| w.iter().all(|w| *w > 0.0)) => {

@@ -4,7 +4,8 @@ use crate::conic::Jet3;
 use crate::{Curve, Curve2, CurveJet, Surface};
 use glam::DVec3;
 
-/// The unit vector along `w` with its first two derivatives, from `w` and its derivatives; `None` where `w` is zero.
+/// The unit vector along `w` with its first two derivatives, from `w` and its derivatives; `None` where `w`
+/// is zero.
 ///
 /// With P = I − nnᵀ: n' = P w'/|w| and n'' = P w''/|w| − 2 n'(n·w')/|w| − n |n'|².
 pub(crate) fn unit_jet(w: DVec3, w1: DVec3, w2: DVec3) -> Option<[DVec3; 3]> {
@@ -21,7 +22,8 @@ pub(crate) fn unit_jet(w: DVec3, w1: DVec3, w2: DVec3) -> Option<[DVec3; 3]> {
     Some([n, n1, n2])
 }
 
-/// A point at `distance` from the basis along `unit(basis' × reference)`; on the basis where that is undefined.
+/// A point at `distance` from the basis along `unit(basis' × reference)`; on the basis where that is
+/// undefined.
 pub(super) fn offset_jet(basis: &Curve, distance: f64, reference: DVec3, t: f64) -> CurveJet {
     let [p, d1, d2, d3] = basis.jet3(t);
     let n = unit_jet(d1.cross(reference), d2.cross(reference), d3.cross(reference)).unwrap_or_default();

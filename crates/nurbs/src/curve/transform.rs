@@ -10,9 +10,9 @@ const SHAPE: f64 = 1e-12;
 impl Curve {
     /// The curve moved by an affine map, each point keeping its parameter.
     ///
-    /// `None` where no curve of the enumeration has that form: a conic skewed so that its axes are no longer at right
-    /// angles, a parabola, offset curve or curve on an elementary surface scaled unevenly. [`Curve::to_nurbs`]
-    /// followed by the map is the way then.
+    /// `None` where no curve of the enumeration has that form: a conic skewed so that its axes are no longer
+    /// at right angles, a parabola, offset curve or curve on an elementary surface scaled unevenly.
+    /// [`Curve::to_nurbs`] followed by the map is the way then.
     pub fn transformed(&self, by: &DAffine3) -> Option<Curve> {
         Some(match self {
             Curve::Line { origin, direction } => Curve::Line {

@@ -40,7 +40,8 @@ pub(super) fn invert(surface: &Surface, p: DVec3, near: Option<DVec2>) -> DVec2 
     }
 }
 
-/// In the half plane a cone is the line ρ = r + v tan α; where that is negative it is the other nappe, half a turn on.
+/// In the half plane a cone is the line ρ = r + v tan α; where that is negative it is the other nappe, half a
+/// turn on.
 fn cone(frame: &Frame, r: f64, slope: f64, p: DVec3, near: Option<DVec2>) -> DVec2 {
     let at = polar(frame, p, r, near);
     let on_line = |rho: f64| (at.height + (rho - r) * slope) / (1.0 + slope * slope);

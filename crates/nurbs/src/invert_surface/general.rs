@@ -1,10 +1,10 @@
 //! Free-form surfaces: samples on a grid, then a damped Newton descent.
 //!
-//! With r = S(u,v) − p the descent solves H δ = −g, g = (r·Su, r·Sv),
-//! H = [Su·Su + r·Suu, Su·Sv + r·Suv; ·, Sv·Sv + r·Svv] + λ diag(Su·Su, Sv·Sv), leaving out the terms in r where H would
-//! not be positive (Gauss–Newton), and keeps to the domain by dropping a direction that is against its border. λ
-//! grows until the distance falls. A descent keeps to one smooth cell; from its border it is tried again in the
-//! next cell. Not guaranteed: that the grid sees a valley narrower than its cells.
+//! With r = S(u,v) − p the descent solves H δ = −g, g = (r·Su, r·Sv), H = [Su·Su + r·Suu, Su·Sv + r·Suv; ·,
+//! Sv·Sv + r·Svv] + λ diag(Su·Su, Sv·Sv), leaving out the terms in r where H would not be positive
+//! (Gauss–Newton), and keeps to the domain by dropping a direction that is against its border. λ grows until
+//! the distance falls. A descent keeps to one smooth cell; from its border it is tried again in the next
+//! cell. Not guaranteed: that the grid sees a valley narrower than its cells.
 
 use super::Inversion;
 use super::terrain::Terrain;
@@ -70,7 +70,8 @@ impl Grid {
         Self { us, vs, points, tiles, cell }
     }
 
-    /// Samples that are lower than those around them, in the tiles that may hold the lowest, the lowest first.
+    /// Samples that are lower than those around them, in the tiles that may hold the lowest, the lowest
+    /// first.
     fn valleys(&self, p: DVec3) -> Vec<(f64, DVec2)> {
         let mut order: Vec<(f64, usize)> = self
             .tiles
@@ -171,7 +172,8 @@ pub(super) fn invert(
         }
         best = better(best, descend(terrain, p, start));
     }
-    // Not on the surface after all: points are expected to be, so that a valley may have hidden between samples.
+    // Not on the surface after all: points are expected to be, so that a valley may have hidden between
+    // samples.
     if best.distance > 0.02 * grid.cell {
         for start in grid.tile_starts(p, best.distance) {
             best = better(best, descend(terrain, p, start));
@@ -271,11 +273,11 @@ fn descend_within(terrain: &Terrain<'_>, open: UvBox, p: DVec3, start: DVec2) ->
     polished(terrain, p, open, Foot { uv, distance: height.sqrt(), speed }, &jet)
 }
 
-/// One more Newton step where the point is off the surface: near the foot the distance itself hardly changes, so that
-/// the descent ends with half of the digits.
+/// One more Newton step where the point is off the surface: near the foot the distance itself hardly changes,
+/// so that the descent ends with half of the digits.
 //
-// Never inlined: within `descend` the optimiser of rustc 1.95 (vectorisation of straight code, at level 3) returned a
-// wrong v for a point exactly on the surface; the inversion tests show it in release builds.
+// Never inlined: within `descend` the optimiser of rustc 1.95 (vectorisation of straight code, at level 3)
+// returned a wrong v for a point exactly on the surface; the inversion tests show it in release builds.
 #[inline(never)]
 fn polished(terrain: &Terrain<'_>, p: DVec3, open: UvBox, found: Foot, jet: &SurfaceJet) -> Foot {
     let Some((step, true)) = newton_step(jet, p, 0.0, found.uv, open) else { return found };

@@ -44,8 +44,8 @@ impl<'a> Terrain<'a> {
         self.surface.point(self.inside(uv))
     }
 
-    /// The smooth cell around a place inside the domain. Its upper ends stay below the creases, where derivatives are
-    /// those of the cell; closed directions without creases have no ends.
+    /// The smooth cell around a place inside the domain. Its upper ends stay below the creases, where
+    /// derivatives are those of the cell; closed directions without creases have no ends.
     pub fn cell(&self, uv: DVec2) -> UvBox {
         let mut cell = self.domain;
         for axis in 0..2 {
@@ -64,7 +64,8 @@ impl<'a> Terrain<'a> {
         cell
     }
 
-    /// Where the descent may go on from a place on a cell's border: the cells beyond the creases that it lies on.
+    /// Where the descent may go on from a place on a cell's border: the cells beyond the creases that it lies
+    /// on.
     pub fn beyond(&self, uv: DVec2, cell: UvBox) -> impl Iterator<Item = DVec2> {
         let mut found = [None; 2];
         for axis in 0..2 {

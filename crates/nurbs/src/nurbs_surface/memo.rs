@@ -2,7 +2,8 @@
 
 use std::sync::OnceLock;
 
-/// A derived fact: it follows from the rest of the value, so that two values are equal whether or not it is known yet.
+/// A derived fact: it follows from the rest of the value, so that two values are equal whether or not it is
+/// known yet.
 #[derive(Clone, Debug)]
 pub(crate) struct Memo<T>(OnceLock<T>);
 

@@ -1,11 +1,12 @@
 //! Bounds of derivatives and of the distance between a piece of a curve and its chord.
 //!
-//! A conic over t = m + θ, |θ| ≤ h, is `k + A g(θ) + B s(θ)` with A from the middle's second derivative, B the tangent
-//! there, and (g, s) = (cos, sin), (θ²/2, θ) or (cosh, sinh). Its chord is parallel to B, so the piece strays from the
-//! chord's line by `|A ⊥ B| |g(h) − g(0)|`, exactly. Points keep their foot on the chord while `|A·B| s(h)/s'(h) ≤ |B|²`;
-//! otherwise the whole of A is taken, which compares points at equal s. Curves without a form of their own are cut
-//! into short pieces with `max|c''| Δ²/8`. What is bounded is the distance of curve points to the chord; the other
-//! direction follows, because a continuous curve between the chord's ends has a point straight above each of the chord's.
+//! A conic over t = m + θ, |θ| ≤ h, is `k + A g(θ) + B s(θ)` with A from the middle's second derivative, B
+//! the tangent there, and (g, s) = (cos, sin), (θ²/2, θ) or (cosh, sinh). Its chord is parallel to B, so the
+//! piece strays from the chord's line by `|A ⊥ B| |g(h) − g(0)|`, exactly. Points keep their foot on the
+//! chord while `|A·B| s(h)/s'(h) ≤ |B|²`; otherwise the whole of A is taken, which compares points at equal
+//! s. Curves without a form of their own are cut into short pieces with `max|c''| Δ²/8`. What is bounded is
+//! the distance of curve points to the chord; the other direction follows, because a continuous curve between
+//! the chord's ends has a point straight above each of the chord's.
 
 use crate::curve::{repeat_over, tidy};
 use crate::segment::segment_distance;
@@ -20,9 +21,17 @@ const PIECES: usize = 8;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Curve {
-    /// Upper bound of the two-sided distance between the curve over `t0..=t1` and the chord between the two ends, in
-    /// model units. Infinite where nothing is proven (weights of both signs, an offset's cusp). Joints of composite
-    /// curves count as joined.
+    /// Upper bound of the two-sided distance between the curve over `t0..=t1` and the chord between the two
+    /// ends, in model units. Infinite where nothing is proven (weights of both signs, an offset's cusp).
+    /// Joints of composite curves count as joined.
+    ///
+    /// ```
+    /// use chordal_nurbs::{Curve, Frame};
+    /// let circle = Curve::Circle { frame: Frame::WORLD, radius: 1.0 };
+    /// // The height of a sixth of the circle over its chord: 1 − cos 30°.
+    /// let error = circle.chord_error(0.0, std::f64::consts::FRAC_PI_3);
+    /// assert!((error - (1.0 - 0.75_f64.sqrt())).abs() < 1e-14);
+    /// ```
     pub fn chord_error(&self, t0: f64, t1: f64) -> f64 {
         let range = Range::new(t0.min(t1), t0.max(t1));
         let h = 0.5 * range.length();
@@ -97,8 +106,8 @@ impl Curve {
         }
     }
 
-    /// Upper bound of the norm of derivative `order` (1 to 3) by the parameter over `range`, between the curve's
-    /// breaks. Infinite where nothing is proven.
+    /// Upper bound of the norm of derivative `order` (1 to 3) by the parameter over `range`, between the
+    /// curve's breaks. Infinite where nothing is proven.
     pub fn derivative_bound(&self, order: usize, range: Range) -> f64 {
         let largest = |ts: &[f64]| {
             ts.iter().map(|&t| self.derivative(order, t).length()).fold(0.0, f64::max) * (1.0 + ROUNDING)
@@ -171,8 +180,8 @@ impl Curve {
         ROUNDING * (origin.length() + ends[0].max(ends[1]))
     }
 
-    /// The distance of pieces end to end from the chord of the whole: that of a piece from its own chord, plus that of
-    /// its ends from the whole's chord, which is convex along the piece's.
+    /// The distance of pieces end to end from the chord of the whole: that of a piece from its own chord,
+    /// plus that of its ends from the whole's chord, which is convex along the piece's.
     fn chained(&self, range: Range, stops: Vec<f64>, error: impl Fn(Range) -> f64) -> f64 {
         let (a, b) = (self.point(range.start), self.point(range.end));
         let off = |t: f64| {
@@ -226,7 +235,8 @@ impl Curve {
 /// Pieces an offset is cut into before its bound is given up.
 const OFFSET_CUTS: usize = 64;
 
-/// With w = basis' × reference and n its unit vector, a, b, c bounds of |w'|, |w''|, |w'''| over the least |w|:
+/// With w = basis' × reference and n its unit vector, a, b, c bounds of |w'|, |w''|, |w'''| over the least
+/// |w|:
 /// |n'| ≤ a, |n''| ≤ b + 3a², |n'''| ≤ 2c + 9ab + 15a³.
 fn offset_bound(basis: &Curve, distance: f64, reference: DVec3, order: usize, range: Range) -> f64 {
     let mut cuts = 1;

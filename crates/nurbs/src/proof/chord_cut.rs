@@ -1,7 +1,7 @@
 //! Polylines of Bézier curves: two criteria and two ways to cut.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 5.1, with the factor that was lost in print restored. Notation: control points
-//! `b_0 … b_n`.
+//! Source: Balázs, Guthe, Klein 2004, section 5.1, with the factor that was lost in print restored. Notation:
+//! control points `b_0 … b_n`.
 //!
 //! ```text
 //! point   f · max ‖b_i − ((n−i) b_0 + i b_n)/n‖      to the point of the chord at the same parameter
@@ -10,8 +10,9 @@
 //! f = 1                                              rational, weights of one sign
 //! ```
 //!
-//! Both bound the Hausdorff distance of curve and chord: the nearest points of the chord run from one end of it to the other
-//! as the curve does. What is too far is halved, or cut at the parameter `j/n` of its farthest control point `b_j`.
+//! Both bound the Hausdorff distance of curve and chord: the nearest points of the chord run from one end of
+//! it to the other as the curve does. What is too far is halved, or cut at the parameter `j/n` of its
+//! farthest control point `b_j`.
 
 use crate::{BezierCurve, Vector};
 
@@ -37,8 +38,8 @@ pub enum ChordCut {
 const DEEPEST: u32 = 40;
 
 impl<V: Vector> BezierCurve<V> {
-    /// Upper bound of the Hausdorff distance between the curve and its chord by one criterion, and the index of the
-    /// control point that it hangs on. Infinite where weights differ in sign.
+    /// Upper bound of the Hausdorff distance between the curve and its chord by one criterion, and the index
+    /// of the control point that it hangs on. Infinite where weights differ in sign.
     pub fn chord_distance(&self, criterion: ChordCriterion) -> (f64, usize) {
         let n = self.degree();
         if n < 2 {
@@ -67,8 +68,8 @@ impl<V: Vector> BezierCurve<V> {
         (factor * worst.0, worst.1)
     }
 
-    /// Parameters from 0 to 1 between which the curve is within `tolerance` of its chords by the criterion; `None` where
-    /// that cannot be had: weights of both signs, or a tolerance below rounding.
+    /// Parameters from 0 to 1 between which the curve is within `tolerance` of its chords by the criterion;
+    /// `None` where that cannot be had: weights of both signs, or a tolerance below rounding.
     pub fn flattened(&self, tolerance: f64, criterion: ChordCriterion, cut: ChordCut) -> Option<Vec<f64>> {
         let mut parameters = vec![0.0];
         let mut stack = vec![(self.clone(), 0.0, 1.0, 0u32)];

@@ -1,8 +1,9 @@
 //! Enclosures of second derivatives over boxes of parameter space: what every proof of a facet rests on.
 //!
-//! A box is covered by *pieces*, one for each smooth cell of the surface that it meets. A piece holds the second derivatives at
-//! its middle and enclosures of the third derivatives, so the enclosure narrows to the truth as boxes shrink.
-//! Cells of a NURBS surface are its Bézier patches (rational ones subdivided), in homogeneous coordinates.
+//! A box is covered by *pieces*, one for each smooth cell of the surface that it meets. A piece holds the
+//! second derivatives at its middle and enclosures of the third derivatives, so the enclosure narrows to the
+//! truth as boxes shrink. Cells of a NURBS surface are its Bézier patches (rational ones subdivided), in
+//! homogeneous coordinates.
 
 use crate::{Range, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3, DVec4};
@@ -32,7 +33,8 @@ impl Ball4 {
     }
 }
 
-/// A smooth cell of a surface: derivatives of its homogeneous form (A, w), measured from `origin`, S = origin + A/w.
+/// A smooth cell of a surface: derivatives of its homogeneous form (A, w), measured from `origin`, S = origin
+/// + A/w.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Cell {
     origin: DVec3,
@@ -154,8 +156,8 @@ pub struct SurfaceBounds<'a> {
 }
 
 impl<'a> SurfaceBounds<'a> {
-    /// Prepares bounds for boxes inside `domain`, which may reach over the seam of a closed surface. Effort is spent so that
-    /// they are tight for facets whose error is about `resolution`.
+    /// Prepares bounds for boxes inside `domain`, which may reach over the seam of a closed surface. Effort
+    /// is spent so that they are tight for facets whose error is about `resolution`.
     pub fn new(surface: &'a Surface, domain: UvBox, resolution: f64) -> Self {
         let wrap = Wrap::of(surface);
         let inside = |range: Range, wrap: Option<Range>| match wrap {
@@ -224,7 +226,8 @@ impl<'a> SurfaceBounds<'a> {
         }
     }
 
-    /// Appends the pieces that cover `uv_box`; returns the jumps of Su and Sv inside it. No piece: nothing is known.
+    /// Appends the pieces that cover `uv_box`; returns the jumps of Su and Sv inside it. No piece: nothing is
+    /// known.
     pub fn pieces(&self, uv_box: UvBox, out: &mut Vec<Piece>) -> DVec2 {
         let mut jump = DVec2::ZERO;
         let (us, u_count) = wrap_range(uv_box.u(), self.wrap.0[0]);
@@ -276,7 +279,8 @@ impl<'a> SurfaceBounds<'a> {
     }
 }
 
-/// The ranges of a closed surface to which parameters must be brought back, because it does not repeat by itself as angles do.
+/// The ranges of a closed surface to which parameters must be brought back, because it does not repeat by
+/// itself as angles do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrap([Option<Range>; 2]);
 
@@ -296,7 +300,8 @@ impl Wrap {
         })
     }
 
-    /// The surface at a point of such a chart. Quicker than asking the surface, which would look for its seam each time.
+    /// The surface at a point of such a chart. Quicker than asking the surface, which would look for its seam
+    /// each time.
     pub fn point(&self, surface: &Surface, p_uv: DVec2) -> DVec3 {
         match surface {
             Surface::Nurbs(nurbs) => nurbs.point(self.apply(p_uv)),
@@ -328,7 +333,8 @@ fn wrap_into(t: f64, base: Option<Range>) -> f64 {
     }
 }
 
-/// The parts of the base range that a range covers after wrapping: up to two, each with what leads back to where it was.
+/// The parts of the base range that a range covers after wrapping: up to two, each with what leads back to
+/// where it was.
 fn wrap_range(range: Range, base: Option<Range>) -> ([(Range, f64); 2], usize) {
     let Some(base) = base else { return ([(range, 0.0); 2], 1) };
     if range.start >= base.start && range.end <= base.end {

@@ -1,11 +1,11 @@
 //! The proven distance between a surface piece and a flat triangle whose corners lie on the surface.
 //!
-//! Cylinders, cones, spheres and tori have forms of their own ([`elementary`]): the distance of a facet's points to the surface,
-//! whose closest-point projection maps facets onto the surface, consistently along shared edges. All other surfaces
-//! go through enclosures of their second derivatives ([`general`]).
+//! Cylinders, cones, spheres and tori have forms of their own ([`elementary`]): the distance of a facet's
+//! points to the surface, whose closest-point projection maps facets onto the surface, consistently along
+//! shared edges. All other surfaces go through enclosures of their second derivatives ([`general`]).
 //!
-//! Sound as long as the mesh lies nearer to the surface than its smallest radius of curvature; facets that lean too far against
-//! the surface are rejected.
+//! Sound as long as the mesh lies nearer to the surface than its smallest radius of curvature; facets that
+//! lean too far against the surface are rejected.
 
 mod chord;
 mod elementary;
@@ -36,8 +36,8 @@ pub struct Facet {
 pub struct FacetBound {
     /// The bound for the whole facet; infinite where nothing can be said.
     pub error: f64,
-    /// The share of the edge opposite corner i alone, which no point inside the facet can lower. Where `error` is far beyond what
-    /// is enough, only a lower bound.
+    /// The share of the edge opposite corner i alone, which no point inside the facet can lower. Where
+    /// `error` is far beyond what is enough, only a lower bound.
     pub edges: [f64; 3],
 }
 
@@ -51,8 +51,8 @@ impl FacetBound {
     }
 }
 
-/// Bounds one facet. A bound below `enough` is as good as any: the effort spent on tightness depends on it. `scratch` is
-/// reused from call to call.
+/// Bounds one facet. A bound below `enough` is as good as any: the effort spent on tightness depends on it.
+/// `scratch` is reused from call to call.
 pub fn facet_bound(
     bounds: &SurfaceBounds<'_>,
     facet: &Facet,
@@ -67,7 +67,8 @@ pub fn facet_bound(
             elementary::cone(facet, radii, half_angle.cos())
         }
         Surface::Sphere { frame, radius } => elementary::sphere(facet, frame.origin, *radius),
-        // Where the tube is wider than its circle, only the part that faces away from the axis has the simple form.
+        // Where the tube is wider than its circle, only the part that faces away from the axis has the simple
+        // form.
         Surface::Torus { frame, major, minor }
             if facet.uv.iter().all(|p| major + minor * p.y.cos() > 0.0) =>
         {
@@ -92,9 +93,9 @@ pub fn facet_bound(
     bound
 }
 
-/// Upper bound of the distance between the image of a segment of parameter space and the chord between its ends' points; from
-/// second derivatives about the segment only, in so many equal `parts`, however wild the surface is beside it. Infinite where nothing
-/// can be said.
+/// Upper bound of the distance between the image of a segment of parameter space and the chord between its
+/// ends' points; from second derivatives about the segment only, in so many equal `parts`, however wild the
+/// surface is beside it. Infinite where nothing can be said.
 pub fn chord_bound(
     bounds: &SurfaceBounds<'_>,
     uv: [DVec2; 2],

@@ -1,9 +1,9 @@
 //! Bounds of curves that are given in the parameter space of a surface.
 //!
-//! - *Chord.* On a spline surface the curve is composed with the patches that it runs over, exactly, and the control points
-//!   of what comes out are measured ([`crate::NurbsSurface::lift`]).
-//! - *Derivatives*, and everything on other surfaces: the chain rule, with bounds of the surface's derivatives over the box
-//!   that the parameter curve keeps to.
+//! - *Chord.* On a spline surface the curve is composed with the patches that it runs over, exactly, and the
+//!   control points of what comes out are measured ([`crate::NurbsSurface::lift`]).
+//! - *Derivatives*, and everything on other surfaces: the chain rule, with bounds of the surface's
+//!   derivatives over the box that the parameter curve keeps to.
 
 use super::spline_chord::hull_to_chord;
 use crate::vector::largest;
@@ -13,8 +13,8 @@ use glam::DVec2;
 /// Exact curves of higher degrees than this cost more than the chain rule.
 const EXACT_DEGREE: usize = 40;
 
-/// Upper bound of the two-sided distance between the curve over `range` and the chord between its ends; `None` where the
-/// surface is no spline, or the curve has no exact form on it.
+/// Upper bound of the two-sided distance between the curve over `range` and the chord between its ends;
+/// `None` where the surface is no spline, or the curve has no exact form on it.
 pub(super) fn exact_chord_error(surface: &Surface, curve: &Curve2, range: Range) -> Option<f64> {
     let Surface::Nurbs(spline) = surface else { return None };
     let plane = curve.to_nurbs(range).ok()?;
@@ -99,8 +99,8 @@ fn norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
     })
 }
 
-/// From enclosures of the second derivatives, and the first ones at the middle. The box is cut to the domain, outside of
-/// which only closed directions go on.
+/// From enclosures of the second derivatives, and the first ones at the middle. The box is cut to the domain,
+/// outside of which only closed directions go on.
 fn general_norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
     let domain = surface.domain();
     let mut inside = UvBox::new(domain.clamp(uv.min), domain.clamp(uv.max));

@@ -1,25 +1,26 @@
 //! Proven bounds over a piece of a curve: how far it strays from its chord, how large its derivatives get.
 //!
-//! Sources: the hull property; the factor on chords from Filip, Magedson and Markot, here with weights. Notation: a
-//! Bézier piece has points `b_0..b_n`, weights `w_i` and length `L` in the parameter; `N/W` is its homogeneous form.
+//! Sources: the hull property; the factor on chords from Filip, Magedson and Markot, here with weights.
+//! Notation: a Bézier piece has points `b_0..b_n`, weights `w_i` and length `L` in the parameter; `N/W` is
+//! its homogeneous form.
 //!
-//! - *Chord.* The distance `δ` to a segment is convex, so at `t` it is at most the mean of the `δ(b_i)` with the
-//!   rational basis as weights. The two ends hold at least the share `e = 2^(1−n)` of it when polynomial, and
-//!   `m e / (M (1 − e) + m e)` with `m` the smaller end weight and `M` the largest inner one otherwise.
-//! - *Derivatives.* Polynomial: the hull of the hodograph. Rational: `c⁽ᵏ⁾ = A_k / W^(k+1)` with `A_0 = N` and
-//!   `A_{k+1} = A_k' W − (k+1) A_k W'`; a quotient of Bernstein forms of one degree with positive denominators is at
-//!   most the largest quotient of coefficients.
+//! - *Chord.* The distance `δ` to a segment is convex, so at `t` it is at most the mean of the `δ(b_i)` with
+//!   the rational basis as weights. The two ends hold at least the share `e = 2^(1−n)` of it when polynomial,
+//!   and `m e / (M (1 − e) + m e)` with `m` the smaller end weight and `M` the largest inner one otherwise.
+//! - *Derivatives.* Polynomial: the hull of the hodograph. Rational: `c⁽ᵏ⁾ = A_k / W^(k+1)` with `A_0 = N`
+//!   and `A_{k+1} = A_k' W − (k+1) A_k W'`; a quotient of Bernstein forms of one degree with positive
+//!   denominators is at most the largest quotient of coefficients.
 //!
-//! Pieces are taken relative to a point of their own, so that distance from the origin costs no digits. Each bound
-//! has its rounding added. A piece whose weights differ in sign has no bound here: infinity.
+//! Pieces are taken relative to a point of their own, so that distance from the origin costs no digits. Each
+//! bound has its rounding added. A piece whose weights differ in sign has no bound here: infinity.
 
 use crate::homogeneous::homogeneous;
 use crate::segment::segment_distance;
 use crate::vector::largest;
 use crate::{BezierCurve, NurbsCurve, Range, Vector, basis, bernstein, blossom};
 
-/// Derivatives over shorter parts of a span are bounded over a part of this share: differences of control points over
-/// a tiny range are all rounding.
+/// Derivatives over shorter parts of a span are bounded over a part of this share: differences of control
+/// points over a tiny range are all rounding.
 const SHORTEST_SHARE: f64 = 1.0 / 1024.0;
 
 impl<V: Vector> NurbsCurve<V> {
@@ -87,8 +88,8 @@ impl<V: Vector> BezierCurve<V> {
             + rounding(self.degree()) * (self.points[0].norm() + size([&local]))
     }
 
-    /// Upper bound of the distance between the curve and its chord **at equal parameters**; polynomial curves only,
-    /// infinity for rational ones.
+    /// Upper bound of the distance between the curve and its chord **at equal parameters**; polynomial curves
+    /// only, infinity for rational ones.
     pub fn chord_bound_at_equal_parameters(&self) -> f64 {
         let n = self.degree();
         if self.weights.is_some() {

@@ -13,16 +13,17 @@ const PLACES: usize = 16;
 /// One side of a line is this share of the domain (and of the parameter's size) away from it.
 const ASIDE: f64 = 1e-12;
 
-/// The same for a line at which the surface stands still: nearer to it its derivative across is rounding, and a point moves by the
-/// square of the step only.
+/// The same for a line at which the surface stands still: nearer to it its derivative across is rounding, and
+/// a point moves by the square of the step only.
 const ASIDE_STILL: f64 = 1e-8;
 
-/// The surface stands still where its derivative across is below this share of that a hundredth of the domain away.
+/// The surface stands still where its derivative across is below this share of that a hundredth of the domain
+/// away.
 const STILL: f64 = 1e-9;
 
 impl Surface {
-    /// Creases: values of u and of v in the closed-open domain across which the normal turns at once. Where a closed surface
-    /// is bent at its seam, the start of that direction is among them.
+    /// Creases: values of u and of v in the closed-open domain across which the normal turns at once. Where a
+    /// closed surface is bent at its seam, the start of that direction is among them.
     pub fn creases(&self) -> [Vec<f64>; 2] {
         let domain = self.domain();
         let mut lines = surface_lines(self, domain, 1);
@@ -36,7 +37,8 @@ impl Surface {
             if periods[axis].is_some() && start.is_finite() && end.is_finite() && has_knots && !angle {
                 lines[axis].insert(0, start);
             }
-            // Control points that lie on each other bring the surface to a stop, and it may go on in another direction.
+            // Control points that lie on each other bring the surface to a stop, and it may go on in another
+            // direction.
             let all = std::mem::take(&mut knots[axis]);
             let smooth: Vec<f64> = all.into_iter().filter(|value| !lines[axis].contains(value)).collect();
             lines[axis].extend(smooth.into_iter().filter(|&value| self.stands_still(axis, value)));
@@ -108,7 +110,8 @@ mod tests {
 
     #[test]
     fn doubled_rows_are_creases() {
-        // A quadratic that stops at (2, 0) and goes on upwards; the same with room between the two points does not stop.
+        // A quadratic that stops at (2, 0) and goes on upwards; the same with room between the two points
+        // does not stop.
         for (between, expected) in [(0.0, vec![1.0]), (0.5, vec![])] {
             let mut points = Vec::new();
             for (x, z) in [(0.0, 0.0), (2.0, 0.0), (2.0 + between, between), (2.0 + between, 2.0)] {

@@ -5,8 +5,8 @@ use crate::{Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3};
 
 impl Surface {
-    /// The surface with offsets of elementary surfaces, and offsets of offsets, replaced by the exact surface of the
-    /// same parameters; everything else as it is.
+    /// The surface with offsets of elementary surfaces, and offsets of offsets, replaced by the exact surface
+    /// of the same parameters; everything else as it is.
     pub fn simplified(self) -> Surface {
         let Surface::Offset { basis, distance } = self else { return self };
         let basis = basis.simplified();
@@ -37,7 +37,8 @@ fn moved(basis: &Surface, distance: f64) -> Option<Surface> {
         Surface::Cylinder { frame, radius } if *radius > 0.0 && radius + distance > 0.0 => {
             Some(Surface::Cylinder { frame: *frame, radius: radius + distance })
         }
-        // Normals point away from the axis on the nappe of v = 0; the other nappe turns inside out, as it would.
+        // Normals point away from the axis on the nappe of v = 0; the other nappe turns inside out, as it
+        // would.
         Surface::Cone { frame, radius, half_angle } if *radius >= 0.0 => {
             let (s, c) = half_angle.sin_cos();
             let side = if *radius == 0.0 { half_angle.signum() } else { 1.0 };
@@ -84,8 +85,8 @@ pub(super) fn jet1(basis: &Surface, distance: f64, p_uv: DVec2) -> (DVec3, DVec3
     (point(basis, distance, p_uv), du + nu * distance, dv + nv * distance)
 }
 
-/// Second derivatives of the normal are central differences of its first ones, on the domain's inner side at its
-/// border.
+/// Second derivatives of the normal are central differences of its first ones, on the domain's inner side at
+/// its border.
 pub(super) fn jet(basis: &Surface, distance: f64, domain: UvBox, p_uv: DVec2) -> SurfaceJet {
     let base = basis.jet(p_uv);
     let (p, du, dv) = jet1(basis, distance, p_uv);

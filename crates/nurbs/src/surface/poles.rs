@@ -1,5 +1,5 @@
-//! Where a surface's parametrisation is singular: lines of parameter space that are one point in space, and the
-//! normals there.
+//! Where a surface's parametrisation is singular: lines of parameter space that are one point in space, and
+//! the normals there.
 
 use crate::curve::CLOSED;
 use crate::{Curve, NurbsSurface, Range, Surface, UvBox};
@@ -35,8 +35,8 @@ impl Surface {
         self.poles_within(0.0)
     }
 
-    /// The lines of parameter space whose points all lie within `tolerance` (model units; at least 1e-7 of the
-    /// surface's size) of one another.
+    /// The lines of parameter space whose points all lie within `tolerance` (model units; at least 1e-7 of
+    /// the surface's size) of one another.
     pub fn poles_within(&self, tolerance: f64) -> Vec<Pole> {
         let on_v = |value: f64| Pole { axis: 1, value, point: self.point(DVec2::new(0.0, value)) };
         match self {
@@ -231,7 +231,8 @@ pub(super) fn limit_normal(surface: &Surface, p_uv: DVec2) -> Option<DVec3> {
     None
 }
 
-/// The normal by the derivatives, unless one is tiny beside the other: the point is on, or all but on, a collapsed line.
+/// The normal by the derivatives, unless one is tiny beside the other: the point is on, or all but on, a
+/// collapsed line.
 pub(super) fn regular_normal(domain: UvBox, du: DVec3, dv: DVec3) -> Option<DVec3> {
     let size = finite_size(domain);
     let (a, b) = (du.length() * size.x, dv.length() * size.y);

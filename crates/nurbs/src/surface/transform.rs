@@ -9,8 +9,8 @@ use glam::{DAffine3, DVec2, DVec3};
 pub struct TransformedSurface {
     /// The moved surface.
     pub surface: Surface,
-    /// The parameters (u, v) of the old surface are (−u, v) of the new one. Happens where a mirror meets a surface with
-    /// a placement, since placements stay right-handed.
+    /// The parameters (u, v) of the old surface are (−u, v) of the new one. Happens where a mirror meets a
+    /// surface with a placement, since placements stay right-handed.
     pub flip_u: bool,
     /// Lengths among the parameters (u and v of a plane, v of a cylinder and a cone) are multiplied by this.
     pub length_scale: f64,
@@ -40,10 +40,11 @@ impl TransformedSurface {
 impl Surface {
     /// The surface moved by a map that keeps shapes (turn, shift, uniform scale, mirror); it keeps its kind.
     ///
-    /// Angles and free-form parameters stay as they are; lengths are scaled and a mirror turns `u` round on surfaces
-    /// with a placement other than planes: see [`TransformedSurface::parameters`]. The normal Su × Sv then points to
-    /// the other side of the moved material where the map mirrors and the parameters do not flip, and to the same
-    /// side where they do. `None` where the map distorts and the surface is not NURBS, or collapses.
+    /// Angles and free-form parameters stay as they are; lengths are scaled and a mirror turns `u` round on
+    /// surfaces with a placement other than planes: see [`TransformedSurface::parameters`]. The normal Su ×
+    /// Sv then points to the other side of the moved material where the map mirrors and the parameters do not
+    /// flip, and to the same side where they do. `None` where the map distorts and the surface is not NURBS,
+    /// or collapses.
     pub fn transformed(&self, by: &DAffine3) -> Option<TransformedSurface> {
         if let Surface::Nurbs(nurbs) = self {
             let surface = Surface::Nurbs(nurbs.transformed(by));

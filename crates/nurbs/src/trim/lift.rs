@@ -1,14 +1,15 @@
 //! Trimming curves lifted onto their surface, exactly.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 4. The document finds the lifted curve of degree `d (du + dv)` by interpolation and
-//! a singular value decomposition, which limits it to degrees about 20; here it is composed in Bernstein form
-//! ([`crate::BezierPatch::compose`]), in homogeneous coordinates, so rational curves and patches are exact, too.
+//! Source: Balázs, Guthe, Klein 2004, section 4. The document finds the lifted curve of degree `d (du + dv)`
+//! by interpolation and a singular value decomposition, which limits it to degrees about 20; here it is
+//! composed in Bernstein form ([`crate::BezierPatch::compose`]), in homogeneous coordinates, so rational
+//! curves and patches are exact, too.
 //!
 //! 1. Degrees that the plane curve does not need are dropped, from both ends towards the middle.
 //! 2. It is cut where it changes sides of a knot line; a stretch along one belongs to either patch.
 //! 3. Each stretch is composed with the patch under its middle.
-//! 4. Degrees that the curve in space does not need are dropped. *Lossless* is a share of the curve's size, and what it did cost
-//!    is proven and reported.
+//! 4. Degrees that the curve in space does not need are dropped. *Lossless* is a share of the curve's size,
+//!    and what it did cost is proven and reported.
 
 use super::roots::sign_changes;
 use crate::{BezierCurve, BezierPatch, NurbsError, NurbsSurface, Range, UvBox, Vector};
@@ -20,7 +21,8 @@ use std::collections::BTreeMap;
 pub struct LiftOptions {
     /// What counts as nothing, as a share of the curve's size, in the plane and in space.
     pub lossless: f64,
-    /// Lifted curves of a higher degree than this are brought down to it where that costs no more than `allowance`.
+    /// Lifted curves of a higher degree than this are brought down to it where that costs no more than
+    /// `allowance`.
     pub degree_cap: usize,
     /// In the surface's units; 0: the degree is what it is.
     pub allowance: f64,
@@ -41,7 +43,8 @@ pub struct LiftedPiece {
     pub uv: BezierCurve<DVec2>,
     /// On the surface, at the same parameters as `uv`.
     pub xyz: BezierCurve<DVec3>,
-    /// Proven distance, at equal parameters, that the reduction of degree put between `xyz` and the surface over `uv`.
+    /// Proven distance, at equal parameters, that the reduction of degree put between `xyz` and the surface
+    /// over `uv`.
     pub error: f64,
 }
 
@@ -67,8 +70,8 @@ const SHORTEST: f64 = 1e-12;
 const ON_LINE: f64 = 1e-14;
 
 impl NurbsSurface {
-    /// The Bézier curves that the surface makes of a Bézier curve in its plane of parameters, one for each stretch over one
-    /// polynomial piece.
+    /// The Bézier curves that the surface makes of a Bézier curve in its plane of parameters, one for each
+    /// stretch over one polynomial piece.
     ///
     /// Beyond the domain the outermost pieces go on.
     ///
@@ -88,8 +91,8 @@ impl NurbsSurface {
             .collect()
     }
 
-    /// The stretches of a Bézier curve in the plane of parameters over one polynomial piece of the surface each, without
-    /// the degrees that it does not need.
+    /// The stretches of a Bézier curve in the plane of parameters over one polynomial piece of the surface
+    /// each, without the degrees that it does not need.
     pub fn lift_onto_patches(&self, curve: &BezierCurve<DVec2>, options: LiftOptions) -> Vec<PatchPiece> {
         let plane = without_spare_degrees(curve, options.lossless).0;
         let mut patches = BTreeMap::new();
@@ -145,8 +148,8 @@ impl NurbsSurface {
 }
 
 impl BezierCurve<DVec2> {
-    /// Parameters strictly between 0 and 1 at which the curve changes sides of the line where coordinate `axis` is `value`,
-    /// increasing. Control points within `on_line` of it are on it.
+    /// Parameters strictly between 0 and 1 at which the curve changes sides of the line where coordinate
+    /// `axis` is `value`, increasing. Control points within `on_line` of it are on it.
     pub fn crossings(&self, axis: usize, value: f64, on_line: f64) -> Vec<f64> {
         let net = self.homogeneous();
         let beyond: Vec<f64> = net.iter().map(|h| h.v[axis] - value * h.w).collect();
@@ -177,11 +180,11 @@ fn reduced(curve: BezierCurve<DVec3>, options: &LiftOptions) -> (BezierCurve<DVe
 /// Rounding of the control points, in units of the last place, that steps of reduction make larger.
 const ROUNDING: f64 = 64.0;
 
-/// As many degrees lower as cost no more than `lossless` of the curve's size and the rounding of its points all together, and what
-/// they cost.
+/// As many degrees lower as cost no more than `lossless` of the curve's size and the rounding of its points
+/// all together, and what they cost.
 ///
-/// Every step takes the left half of the control points from the left, the right half from the right, the mean where they meet,
-/// and is judged by elevating the result again.
+/// Every step takes the left half of the control points from the left, the right half from the right, the
+/// mean where they meet, and is judged by elevating the result again.
 fn without_spare_degrees<V: Vector>(curve: &BezierCurve<V>, lossless: f64) -> (BezierCurve<V>, f64) {
     let origin = curve.points[0];
     let size = curve.points.iter().fold(0.0f64, |m, p| m.max((*p - origin).norm()));

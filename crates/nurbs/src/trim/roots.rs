@@ -1,15 +1,17 @@
 //! Where a polynomial in Bernstein form changes its sign.
 //!
-//! Source: the variation-diminishing property. Coefficients without a change of sign have no root between; with one change they
-//! have exactly one, which bisection finds; with more, the interval is halved. What stays undecided in an interval
-//! of rounding's width counts as one root there where the ends differ in sign, else as none.
+//! Source: the variation-diminishing property. Coefficients without a change of sign have no root between;
+//! with one change they have exactly one, which bisection finds; with more, the interval is halved. What
+//! stays undecided in an interval of rounding's width counts as one root there where the ends differ in sign,
+//! else as none.
 
 use crate::blossom;
 
 /// Intervals are halved at most this often.
 const DEEPEST: u32 = 52;
 
-/// The parameters strictly between 0 and 1 at which the polynomial with these Bernstein coefficients changes its sign, increasing.
+/// The parameters strictly between 0 and 1 at which the polynomial with these Bernstein coefficients changes
+/// its sign, increasing.
 ///
 /// Coefficients below `zero` in size count as zero; a polynomial that is zero throughout changes nowhere.
 pub(crate) fn sign_changes(coefficients: &[f64], zero: f64) -> Vec<f64> {

@@ -1,6 +1,7 @@
 //! Border edges of a mesh, in chains.
 //!
-//! Vertices in which several fans of triangles touch are taken apart first, so that a border vertex has two border edges.
+//! Vertices in which several fans of triangles touch are taken apart first, so that a border vertex has two
+//! border edges.
 
 use glam::DVec3;
 
@@ -9,7 +10,8 @@ use glam::DVec3;
 pub(crate) struct Boundary {
     /// Vertices in order; of a closed chain the first is not repeated.
     pub vertices: Vec<u32>,
-    /// Per edge (from vertex i to i + 1) its triangle, the side of it, and whether the side runs along the chain.
+    /// Per edge (from vertex i to i + 1) its triangle, the side of it, and whether the side runs along the
+    /// chain.
     pub sides: Vec<(u32, u8, bool)>,
     pub closed: bool,
     /// The length of the chain up to each vertex; of a closed one a last entry with the whole.

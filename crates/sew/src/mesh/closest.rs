@@ -8,7 +8,8 @@ use chordal_nurbs::Box3;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Two places of one border may be sewn where it runs this many times their distance, and tolerances, between them.
+/// Two places of one border may be sewn where it runs this many times their distance, and tolerances, between
+/// them.
 const APART: f64 = 4.0;
 /// Lengths along a border are good for this part of the whole.
 const ROUNDING: f64 = 1e-9;
@@ -179,7 +180,8 @@ fn nearest_of_edges(boundaries: &Boundaries, edges: &Edges) -> Vec<Vec<[Option<f
         .collect()
 }
 
-/// The distance of a border's point from the nearest other place that the border does not lead to on a short way.
+/// The distance of a border's point from the nearest other place that the border does not lead to on a short
+/// way.
 fn nearest(boundaries: &Boundaries, edges: &Edges, border: u32, p: DVec3, own: f64) -> Option<f64> {
     let found = edges.tree.nearest(p, f64::INFINITY, |e| {
         let (other, k) = edges.of[e as usize];

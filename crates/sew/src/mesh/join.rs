@@ -8,7 +8,8 @@ use crate::cluster::{Corner, cluster_pairs};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// New vertices on one edge nearer than this share of the tolerance are one, and so are those as near to its ends.
+/// New vertices on one edge nearer than this share of the tolerance are one, and so are those as near to its
+/// ends.
 const SAME: f64 = 0.02;
 
 /// A mesh with borders joined.
@@ -77,7 +78,8 @@ pub(crate) fn join(
     Joined { mesh: SewnMesh { positions, triangles: merged, sources, shells } }
 }
 
-/// Per vertex of a pair, the vertices that a triangle joins it to: merging them would make the triangle vanish.
+/// Per vertex of a pair, the vertices that a triangle joins it to: merging them would make the triangle
+/// vanish.
 fn neighbours(triangles: &[[u32; 3]], pairs: &[(f64, u32, u32)], count: usize) -> Vec<Vec<u32>> {
     let mut paired = vec![false; count];
     pairs.iter().for_each(|p| (paired[p.1 as usize], paired[p.2 as usize]) = (true, true));

@@ -1,5 +1,5 @@
-//! Sewing of triangle meshes that come without surfaces: section 8 of Kahlesz, Balázs and Klein 2001, NURBS Rendering in
-//! OpenSG Plus.
+//! Sewing of triangle meshes that come without surfaces: section 8 of Kahlesz, Balázs and Klein 2001, NURBS
+//! Rendering in OpenSG Plus.
 //!
 //! ```text
 //!   boundaries ([`boundary`])   border edges in chains; vertices in which chains touch are taken apart
@@ -10,9 +10,10 @@
 //!   shells ([`shells`])         joined meshes agree which way is out
 //! ```
 //!
-//! Where the paper reparametrises a common border by its whole length, this does so between neighbouring correspondences:
-//! what one border wriggles more than the other does not add up, and no vertex moves by more than the tolerance. A
-//! pair that would break that is left out, and its edges stay open. In place of a grid there is a tree of boxes.
+//! Where the paper reparametrises a common border by its whole length, this does so between neighbouring
+//! correspondences: what one border wriggles more than the other does not add up, and no vertex moves by more
+//! than the tolerance. A pair that would break that is left out, and its edges stay open. In place of a grid
+//! there is a tree of boxes.
 
 mod boundary;
 mod closest;
@@ -48,8 +49,8 @@ pub struct OpenBorder {
     pub edges: usize,
     /// The sum of their lengths.
     pub length: f64,
-    /// Of the middles of its edges, the smallest and the largest distance from another open edge that is no neighbour;
-    /// `None` where there is no other.
+    /// Of the middles of its edges, the smallest and the largest distance from another open edge that is no
+    /// neighbour; `None` where there is no other.
     pub nearest: Option<[f64; 2]>,
     /// A point of it.
     pub at: DVec3,
@@ -96,8 +97,9 @@ pub struct MeshSewReport {
 
 /// Sews the borders of a mesh to each other.
 ///
-/// Corners are the same vertex where they have the same index. No vertex moves by more than the tolerance. `unit` is the
-/// finest length that the coordinates can hold (of 32-bit files more than that of the numbers here).
+/// Corners are the same vertex where they have the same index. No vertex moves by more than the tolerance.
+/// `unit` is the finest length that the coordinates can hold (of 32-bit files more than that of the numbers
+/// here).
 pub fn sew_mesh(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -132,11 +134,13 @@ pub fn sew_mesh(
 
 /// A border that turns by more than this (cosine) at a vertex has a corner there.
 const CORNER: f64 = 0.85;
-/// The share of chords whose sagitta the mesh is judged by: the longest few may be what tessellation got wrong.
+/// The share of chords whose sagitta the mesh is judged by: the longest few may be what tessellation got
+/// wrong.
 const TYPICAL: f64 = 0.95;
 
-/// How far the chords of the borders stray from the curves that they stand for: a vertex lies four times as far from the chord
-/// of its neighbours. Two meshes of one curve, with vertices at different places, cannot meet any better.
+/// How far the chords of the borders stray from the curves that they stand for: a vertex lies four times as
+/// far from the chord of its neighbours. Two meshes of one curve, with vertices at different places, cannot
+/// meet any better.
 fn chord_sag(boundaries: &Boundaries) -> f64 {
     let mut sags = Vec::new();
     for border in &boundaries.all {
@@ -157,7 +161,8 @@ fn chord_sag(boundaries: &Boundaries) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// How far the borders of a mesh are from each other, if that is more than the coordinates and the chords of the mesh can hold.
+/// How far the borders of a mesh are from each other, if that is more than the coordinates and the chords of
+/// the mesh can hold.
 fn survey(boundaries: &Boundaries, resolution: Option<f64>) -> Option<AutoTolerance> {
     let box3 = Box3::from_points(boundaries.positions.iter().copied());
     let sag = 2.0 * chord_sag(boundaries);

@@ -1,10 +1,11 @@
 //! Proximities followed along both borders (the paper's `get_preliminary_to_sew_list`, `process_foldings` and
 //! `reparametrize`).
 //!
-//! Approaches between two borders are correspondences between their lengths. Sorted along the first border they fall into
-//! stretches: from one to the next neither border has a vertex without a correspondence, and both run on about as far. In a
-//! stretch the second lengths must grow (or fall) all the way; those that do not are foldings: the longest chain that does
-//! stays. Vertices that lost theirs get one by their share of the length between the neighbouring correspondences.
+//! Approaches between two borders are correspondences between their lengths. Sorted along the first border
+//! they fall into stretches: from one to the next neither border has a vertex without a correspondence, and
+//! both run on about as far. In a stretch the second lengths must grow (or fall) all the way; those that do
+//! not are foldings: the longest chain that does stays. Vertices that lost theirs get one by their share of
+//! the length between the neighbouring correspondences.
 
 use super::boundary::Boundaries;
 use super::closest::{Approach, Approaches, Place, along, between, vertex_place};
@@ -150,8 +151,8 @@ impl Tracker<'_> {
         d - whole * (d / whole).round()
     }
 
-    /// True where the border has a vertex strictly between two lengths, with a whole edge beyond it: it lacks a
-    /// correspondence, for vertices that have one are matches themselves.
+    /// True where the border has a vertex strictly between two lengths, with a whole edge beyond it: it lacks
+    /// a correspondence, for vertices that have one are matches themselves.
     fn gap(&self, side: usize, from: f64, to: f64) -> bool {
         let boundary = &self.boundaries.all[self.borders[side] as usize];
         let first = boundary.along.partition_point(|&a| a <= from);
@@ -182,8 +183,8 @@ impl Tracker<'_> {
         pairs
     }
 
-    /// The common reparametrisation between two correspondences: every vertex of one border gets the place of the other one
-    /// that is as far along.
+    /// The common reparametrisation between two correspondences: every vertex of one border gets the place of
+    /// the other one that is as far along.
     fn between(&self, a: &Match, b: &Match, second: [f64; 2], pairs: &mut Vec<Pair>) {
         let ranges = [[a.places[0].along, b.places[0].along], second];
         for side in 0..2 {
@@ -202,7 +203,8 @@ impl Tracker<'_> {
         }
     }
 
-    /// Vertices strictly between two lengths (in any order, perhaps beyond the whole length), with their lengths there.
+    /// Vertices strictly between two lengths (in any order, perhaps beyond the whole length), with their
+    /// lengths there.
     fn vertices_between(&self, side: usize, range: [f64; 2]) -> Vec<(usize, f64)> {
         let boundary = &self.boundaries.all[self.borders[side] as usize];
         let (low, high) = (range[0].min(range[1]), range[0].max(range[1]));
@@ -249,7 +251,8 @@ impl Tracker<'_> {
     }
 }
 
-/// The longest chain of points in which both coordinates grow by more than `least` (the first is sorted): indices.
+/// The longest chain of points in which both coordinates grow by more than `least` (the first is sorted):
+/// indices.
 fn longest_chain(points: &[(f64, f64)], least: f64) -> Vec<usize> {
     // Tails of chains by length, in the manner of patience sorting.
     let mut tails: Vec<usize> = Vec::new();

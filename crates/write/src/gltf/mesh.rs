@@ -222,12 +222,14 @@ fn material(name: String, color: Rgba) -> Material {
 fn stretch(placed: &PlacedPart) -> f64 {
     let m = placed.world.matrix3;
     let gram = m.transpose() * m;
-    // The largest eigenvalue of the Gram matrix lies under its largest absolute row sum: exact for a scaled rotation.
+    // The largest eigenvalue of the Gram matrix lies under its largest absolute row sum: exact for a scaled
+    // rotation.
     let row = |v: DVec3| v.abs().element_sum();
     row(gram.x_axis).max(row(gram.y_axis)).max(row(gram.z_axis)).sqrt()
 }
 
-/// The patches with triangles, gathered by colour in the order of their first use; tessellated items stay apart.
+/// The patches with triangles, gathered by colour in the order of their first use; tessellated items stay
+/// apart.
 fn by_color<'p, 'a>(group: &'p [Patch<'a>]) -> Vec<Vec<&'p Patch<'a>>> {
     let mut order: BTreeMap<Option<ColorKey>, usize> = BTreeMap::new();
     let mut sets: Vec<Vec<&Patch<'_>>> = Vec::new();
@@ -325,7 +327,8 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// The vertex of a corner; a pole without a normal takes that of each triangle, as glTF allows no zero normal.
+    /// The vertex of a corner; a pole without a normal takes that of each triangle, as glTF allows no zero
+    /// normal.
     fn corner(&mut self, patch: &Patch<'_>, corner: u32, point: u32, points: [u32; 3], frame: Frame) -> u32 {
         let index = corner as usize;
         if index >= self.of_corner.len() {

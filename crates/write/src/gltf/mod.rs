@@ -1,17 +1,18 @@
 //! glTF 2.0, in one binary file (GLB) or as JSON text with its buffer embedded.
 //!
-//! The tree of the scene becomes the tree of nodes; a part becomes one mesh however often it is placed, and one more
-//! per colour that an assembly gives it. A mesh has a primitive per colour, in the order of their first face. Vertices
-//! are split only where the exact normals of two corners differ. Every triangle of an exact face carries the face's
-//! index in its part, by the extension `TM_brep_faces` that cascadio writes and reads.
+//! The tree of the scene becomes the tree of nodes; a part becomes one mesh however often it is placed, and
+//! one more per colour that an assembly gives it. A mesh has a primitive per colour, in the order of their
+//! first face. Vertices are split only where the exact normals of two corners differ. Every triangle of an
+//! exact face carries the face's index in its part, by the extension `TM_brep_faces` that cascadio writes and
+//! reads.
 //!
-//! Transforms between nodes are `F·T·F⁻¹`, with `F` the change to metres and to Y up, so no extra root is needed. A
-//! mirroring transform stays as it is: by the specification the renderer reverses the winding where the determinant is
-//! negative.
+//! Transforms between nodes are `F·T·F⁻¹`, with `F` the change to metres and to Y up, so no extra root is
+//! needed. A mirroring transform stays as it is: by the specification the renderer reverses the winding where
+//! the determinant is negative.
 //!
-//! Coordinates are 32-bit floats, the numbers of node matrices decimal. If a part lies far from its own origin, its mesh
-//! is moved to the centre of its box and its node moves it back (see [`origin_of`]): rounding is then relative to the
-//! part's size, not to its distance from the origin.
+//! Coordinates are 32-bit floats, the numbers of node matrices decimal. If a part lies far from its own
+//! origin, its mesh is moved to the centre of its box and its node moves it back (see [`origin_of`]):
+//! rounding is then relative to the part's size, not to its distance from the origin.
 
 mod buffer;
 mod json;
@@ -29,8 +30,8 @@ use std::io::Write;
 
 /// The largest cosine between two columns of a matrix that is still taken for a rotation with scale.
 ///
-/// glTF forbids shears. Files give directions with as few as six digits, so a smaller value would call those rotations
-/// shears; a larger one would let visible shears pass without a warning.
+/// glTF forbids shears. Files give directions with as few as six digits, so a smaller value would call those
+/// rotations shears; a larger one would let visible shears pass without a warning.
 const SHEAR: f64 = 1e-4;
 
 /// Writes JSON and buffer as the two chunks of one binary file (GLB).

@@ -1,11 +1,11 @@
 //! 3MF: a zip archive with one XML model, a unit, objects with shared vertices, components that place them.
 //!
-//! A part becomes one object however often it is placed (one more per colour that an assembly gives it), a node with
-//! children an object of components, a root a build item. Numbers are 64-bit in decimal digits.
+//! A part becomes one object however often it is placed (one more per colour that an assembly gives it), a
+//! node with children an object of components, a root a build item. Numbers are 64-bit in decimal digits.
 //!
-//! 3MF has no mirroring transforms in practice (consumers disagree about the winding), so a mirror is baked: below a
-//! mirroring node everything is expressed in coordinates with x reversed, `R = diag(−1, 1, 1)`, and its transform becomes
-//! `T·R`. Every transform written so has a positive determinant.
+//! 3MF has no mirroring transforms in practice (consumers disagree about the winding), so a mirror is baked:
+//! below a mirroring node everything is expressed in coordinates with x reversed, `R = diag(−1, 1, 1)`, and
+//! its transform becomes `T·R`. Every transform written so has a positive determinant.
 
 mod materials;
 mod object;

@@ -22,7 +22,8 @@ pub const FORMATS: [Format; 7] = [
 pub const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
 pub const GLASS: [f32; 4] = [0.0, 0.5, 1.0, 0.25];
 
-/// An axis-aligned box: 8 shared positions, 6 faces of 4 corners and 2 triangles, 12 edges. A ninth position is unused.
+/// An axis-aligned box: 8 shared positions, 6 faces of 4 corners and 2 triangles, 12 edges. A ninth position
+/// is unused.
 pub fn box_mesh(low: DVec3, high: DVec3) -> PartMesh {
     let corner = |i: usize| {
         let pick = |bit: usize, axis: usize| if i >> bit & 1 == 1 { high[axis] } else { low[axis] };
@@ -86,8 +87,9 @@ pub fn cube() -> Scene {
     single(part("cube", box_mesh(DVec3::ZERO, DVec3::ONE)), DAffine3::IDENTITY)
 }
 
-/// Two parts: a brick placed three times (turned and moved, mirrored below an assembly, coloured by one), and a sheet
-/// that came tessellated. Some faces have colours and names. Lengths are inches turned into millimetres by the root.
+/// Two parts: a brick placed three times (turned and moved, mirrored below an assembly, coloured by one), and
+/// a sheet that came tessellated. Some faces have colours and names. Lengths are inches turned into
+/// millimetres by the root.
 pub fn assembly() -> Scene {
     let mut brick =
         part("brick & \"mortar\"", box_mesh(DVec3::new(0.5, -1.0, 2.0), DVec3::new(1.7, 3.0, 2.3)));

@@ -1,7 +1,8 @@
 //! The cells of a NURBS surface: its Bézier patches, cut as finely as the boxes asked for.
 //!
-//! A box is covered by cells about as large as itself: larger ones would be looser than need be, smaller ones more than
-//! need be. So there are levels of cells, each half as large, in each direction, made when first asked for.
+//! A box is covered by cells about as large as itself: larger ones would be looser than need be, smaller ones
+//! more than need be. So there are levels of cells, each half as large, in each direction, made when first
+//! asked for.
 
 use super::net::Patch;
 use super::{Cell, Piece, net, overlapped};
@@ -12,7 +13,8 @@ use std::sync::OnceLock;
 /// Cells are at most this many times halved.
 const MAX_LEVEL: usize = 5;
 
-/// Slack that a cell may add to a facet as large as itself, as a share of the resolution: no level is finer than that needs.
+/// Slack that a cell may add to a facet as large as itself, as a share of the resolution: no level is finer
+/// than that needs.
 const SLACK: f64 = 0.02;
 
 /// The cells of one patch at one pair of levels, row by row.

@@ -1,7 +1,8 @@
-//! Enclosures of second and third derivatives from the control nets of Bézier patches, in homogeneous coordinates.
+//! Enclosures of second and third derivatives from the control nets of Bézier patches, in homogeneous
+//! coordinates.
 //!
-//! A derivative's own control net encloses it. Rational patches are not divided: what a proof needs of S = A/w is
-//! n·(S − a) = n·(A − a w)/w, so it is enough to know the derivatives of the polynomial (A, w).
+//! A derivative's own control net encloses it. Rational patches are not divided: what a proof needs of S =
+//! A/w is n·(S − a) = n·(A − a w)/w, so it is enough to know the derivatives of the polynomial (A, w).
 
 use super::{Ball4, Cell};
 use crate::basis::Basis;
@@ -126,7 +127,8 @@ impl Patch {
 }
 
 impl Patch {
-    /// What the uncertainty of the third derivatives over the whole patch adds to the bound of a facet as large as the patch.
+    /// What the uncertainty of the third derivatives over the whole patch adds to the bound of a facet as
+    /// large as the patch.
     pub fn slack(&self) -> f64 {
         let cell = cell(&self.net, self.origin, self.span);
         // A facet is measured from one of its corners, which lies within the patch.

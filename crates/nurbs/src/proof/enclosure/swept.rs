@@ -1,8 +1,9 @@
 //! Third derivatives of surfaces that are swept along a line or around an axis, and how far they stray.
 //!
 //! Notation: a rotation by u about the axis a: S_uu is minus the part of S across the axis, so S_uuu = −S_u,
-//! S_uuv = a × (a × S_v), S_uvv = a × S_vv; S_vvv is the profile's, turned. Fourth derivatives follow likewise, and are bounded by
-//! the distance from the axis and the profile's derivatives; times half the extent they bound how third derivatives stray.
+//! S_uuv = a × (a × S_v), S_uvv = a × S_vv; S_vvv is the profile's, turned. Fourth derivatives follow
+//! likewise, and are bounded by the distance from the axis and the profile's derivatives; times half the
+//! extent they bound how third derivatives stray.
 
 use super::{Piece, SurfaceBounds, overlapped};
 use crate::{Curve, Range, Surface, SurfaceJet, UvBox};

@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3};
 /// A chord that bends by less than this share of its length bends to no side in particular.
 const STRAIGHT: f64 = 1e-7;
 
-/// See [`super::chord_bound`]: the distance from the chord at the ends of equal parts of the segment, and between them the error of
-/// linear interpolation across the chord, in two directions.
+/// See [`super::chord_bound`]: the distance from the chord at the ends of equal parts of the segment, and
+/// between them the error of linear interpolation across the chord, in two directions.
 pub(super) fn bound(
     bounds: &SurfaceBounds<'_>,
     uv: [DVec2; 2],

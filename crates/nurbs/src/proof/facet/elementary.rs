@@ -4,12 +4,13 @@ use super::{Facet, FacetBound, lattice};
 use crate::Frame;
 use glam::DVec3;
 
-/// Facets that turn further round an axis than this (radians) are rejected: at π the projection from the axis folds.
+/// Facets that turn further round an axis than this (radians) are rejected: at π the projection from the axis
+/// folds.
 const MAX_TURN: f64 = 2.6;
 
-/// The largest distance from a chord between radii `a` and `b`, the angle `turn` apart, to the cone (before the factor
-/// cos α): f = x − √(x² − y²) with x = w_a + w_b, y² = 4 w_a w_b sin²(turn/2), w_a = λa, w_b = (1−λ)b. The harmonic mean
-/// w_a w_b / x is at most 1/(1/√a + 1/√b)², and y²/x² at most sin².
+/// The largest distance from a chord between radii `a` and `b`, the angle `turn` apart, to the cone (before
+/// the factor cos α): f = x − √(x² − y²) with x = w_a + w_b, y² = 4 w_a w_b sin²(turn/2), w_a = λa, w_b =
+/// (1−λ)b. The harmonic mean w_a w_b / x is at most 1/(1/√a + 1/√b)², and y²/x² at most sin².
 fn cone_chord(a: f64, b: f64, turn: f64) -> f64 {
     if a <= 0.0 || b <= 0.0 {
         return 0.0;
@@ -20,9 +21,9 @@ fn cone_chord(a: f64, b: f64, turn: f64) -> f64 {
 
 /// Cylinders and cones, by their radii at the corners.
 ///
-/// The distance of a facet point Σ λ_i r_i e(u_i) to the cone is (Σ w_i − |Σ w_i e_i|) cos α, w_i = λ_i r_i. It grows with each
-/// radius, and writing the middle direction as α e_first + β e_last (α + β ≥ 1) turns it into a chord across the facet's whole
-/// turn, between its two largest radii, at most α + β times over.
+/// The distance of a facet point Σ λ_i r_i e(u_i) to the cone is (Σ w_i − |Σ w_i e_i|) cos α, w_i = λ_i r_i.
+/// It grows with each radius, and writing the middle direction as α e_first + β e_last (α + β ≥ 1) turns it
+/// into a chord across the facet's whole turn, between its two largest radii, at most α + β times over.
 pub(super) fn cone(facet: &Facet, radii: [f64; 3], cosine: f64) -> FacetBound {
     let low = radii.iter().fold(f64::INFINITY, |m, &r| m.min(r));
     let scale = radii.iter().fold(0.0f64, |m, &r| m.max(r.abs()));
@@ -92,9 +93,10 @@ fn nearest_on_segment(p: DVec3, q: DVec3) -> DVec3 {
 
 /// A torus: the distance ρ to the circle that its tube is drawn around, against the tube's radius.
 ///
-/// ρ is sampled on a lattice over the facet; between the samples it strays from linear by at most a sixth of the largest
-/// second derivative along an edge of the lattice. That derivative is at most (d·t₁)²/ρ + |cos θ|/(R + ρ cos θ)·(d·t₂)² ≤
-/// d₁²/ρ + |d|²/q, with d₁ the edge's part in the turning plane of the tube and q the distance to the axis.
+/// ρ is sampled on a lattice over the facet; between the samples it strays from linear by at most a sixth of
+/// the largest second derivative along an edge of the lattice. That derivative is at most (d·t₁)²/ρ + |cos
+/// θ|/(R + ρ cos θ)·(d·t₂)² ≤ d₁²/ρ + |d|²/q, with d₁ the edge's part in the turning plane of the tube and q
+/// the distance to the axis.
 pub(super) fn torus(facet: &Facet, frame: &Frame, major: f64, minor: f64, enough: f64) -> FacetBound {
     let local = facet.xyz.map(|p| frame.local(p));
     let [a, b, c] = local;

@@ -1,10 +1,11 @@
 //! Facets of an extruded profile, by the profile's distance from its chords.
 //!
-//! Seen along the direction of extrusion, a facet with corners at u_a ≤ u_b ≤ u_c lies in the triangle of these three points
-//! of the profile, and the surface over it on the arc from u_a to u_c. Points of the triangle are no farther from its longest
-//! side than its middle corner is, nor farther along than the middle corner is from either end; that side is the chord of
-//! the arc. How fast the parameter runs along the arc plays no part, other than for bounds by second derivatives: those cannot
-//! be had below the tolerance where a profile bends sharply or its speed varies much within one chord.
+//! Seen along the direction of extrusion, a facet with corners at u_a ≤ u_b ≤ u_c lies in the triangle of
+//! these three points of the profile, and the surface over it on the arc from u_a to u_c. Points of the
+//! triangle are no farther from its longest side than its middle corner is, nor farther along than the middle
+//! corner is from either end; that side is the chord of the arc. How fast the parameter runs along the arc
+//! plays no part, other than for bounds by second derivatives: those cannot be had below the tolerance where
+//! a profile bends sharply or its speed varies much within one chord.
 
 use super::{Facet, FacetBound};
 use crate::Curve;

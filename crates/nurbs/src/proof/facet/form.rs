@@ -1,17 +1,20 @@
-//! Second derivatives of one coordinate over a triangle, as a linear function and a remainder, and what they make of the error
-//! of linear interpolation.
+//! Second derivatives of one coordinate over a triangle, as a linear function and a remainder, and what they
+//! make of the error of linear interpolation.
 //!
-//! Notation: T the triangle with corners p_i and centroid c, d_i the edge opposite corner i, λ barycentric coordinates,
-//! H(x) = M + K·(x − c) the modelled second derivatives, r how far the true ones stray from them.
+//! Notation: T the triangle with corners p_i and centroid c, d_i the edge opposite corner i, λ barycentric
+//! coordinates, H(x) = M + K·(x − c) the modelled second derivatives, r how far the true ones stray from
+//! them.
 //!
-//! The interpolation error of a function with second derivatives H is the cubic −½ Σ λ_j λ_k M\[d_i, d_i\] + C(λ), C in
-//! Bernstein form (Farin, *Curves and Surfaces for CAGD*, chapter 17): its coefficients follow from the second derivatives at
-//! the corners, because those of the error are the function's and the error vanishes at the corners.
+//! The interpolation error of a function with second derivatives H is the cubic −½ Σ λ_j λ_k M\[d_i, d_i\] +
+//! C(λ), C in Bernstein form (Farin, *Curves and Surfaces for CAGD*, chapter 17): its coefficients follow
+//! from the second derivatives at the corners, because those of the error are the function's and the error
+//! vanishes at the corners.
 
 use crate::{Component, Piece};
 use glam::{DVec2, DVec3};
 
-/// Second derivatives over a triangle: uu, uv, vv at the centroid, their rates uuu, uuv, uvv, vvv, and how far they stray.
+/// Second derivatives over a triangle: uu, uv, vv at the centroid, their rates uuu, uuv, uvv, vvv, and how
+/// far they stray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Form {
     pub middle: [f64; 3],
@@ -126,7 +129,8 @@ pub(super) struct Cubic {
     pub h: [f64; 3],
     /// How they differ at the two ends of each edge.
     ends: [[f64; 2]; 3],
-    /// Bernstein coefficients of C on edge i, nearer to corner i + 1 and nearer to corner i + 2; the others are zero.
+    /// Bernstein coefficients of C on edge i, nearer to corner i + 1 and nearer to corner i + 2; the others
+    /// are zero.
     sides: [[f64; 2]; 3],
     inner: f64,
 }
@@ -143,7 +147,8 @@ impl Cubic {
         edges.max(largest_quadratic(self.h) + self.cubic_part())
     }
 
-    /// The largest error on edge i, exactly: the maximum of t (1 − t) (|h|/2 + |s| (1 − 2t)/12), s the change of h.
+    /// The largest error on edge i, exactly: the maximum of t (1 − t) (|h|/2 + |s| (1 − 2t)/12), s the change
+    /// of h.
     pub fn on_edge(&self, i: usize) -> f64 {
         let [start, end] = self.ends[i];
         let (a, b) = (0.5 * (self.h[i] + 0.5 * (start + end)).abs(), (end - start).abs() / 12.0);
@@ -152,8 +157,8 @@ impl Cubic {
         0.25 * (1.0 - x * x) * (a + b * x)
     }
 
-    /// A bound of the error between the points of a lattice, times the square of its parts: the second derivatives are those
-    /// somewhere in the triangle.
+    /// A bound of the error between the points of a lattice, times the square of its parts: the second
+    /// derivatives are those somewhere in the triangle.
     pub fn largest_between(&self, parts: usize) -> f64 {
         let change = (0..3).fold(0.0f64, |m, i| m.max(self.change(i)));
         largest_quadratic(self.h) + change / 6.0 + self.cubic_part() / parts as f64

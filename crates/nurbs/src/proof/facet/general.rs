@@ -1,20 +1,23 @@
 //! Facets of any smooth surface, by enclosures of its second derivatives.
 //!
-//! Notation: T the triangle in parameter space with corners p_i, L the affine map of T onto the facet, S the surface,
-//! n the facet's unit normal, d_ij = p_j − p_i, λ barycentric coordinates, e = S − L (zero at the corners).
+//! Notation: T the triangle in parameter space with corners p_i, L the affine map of T onto the facet, S the
+//! surface, n the facet's unit normal, d_ij = p_j − p_i, λ barycentric coordinates, e = S − L (zero at the
+//! corners).
 //!
-//! **Along n.** For a cubic f = n·S the error of linear interpolation is known exactly ([`Cubic`]: its quadratic part is
-//! −½ Σ_{i<j} λ_i λ_j h_ij with h_ij = D²f\[d_ij, d_ij\] at the centroid). (For rational surfaces f is the polynomial w n·(S − a).)
-//! Any other f is modelled by one; its second derivatives stray from the model's by at most r over T, which adds at most
-//! ⅛(r_uu R_u² + 2 r_uv R_u R_v + r_vv R_v²), R the extent of T; this follows from Taylor's formula with integral remainder and
-//! Σ λ_i (u − u_i)² ≤ R_u²/4. Where that is not enough, e is evaluated on a lattice of k² small triangles and only what lies between
-//! its points is bounded so, of e itself or of its difference from the model: k² times less. Where even that is not enough, the
-//! lattice is made finer near the largest error only ([`Closer`]).
+//! **Along n.** For a cubic f = n·S the error of linear interpolation is known exactly ([`Cubic`]: its
+//! quadratic part is −½ Σ_{i<j} λ_i λ_j h_ij with h_ij = D²f\[d_ij, d_ij\] at the centroid). (For rational
+//! surfaces f is the polynomial w n·(S − a).) Any other f is modelled by one; its second derivatives stray
+//! from the model's by at most r over T, which adds at most ⅛(r_uu R_u² + 2 r_uv R_u R_v + r_vv R_v²), R the
+//! extent of T; this follows from Taylor's formula with integral remainder and Σ λ_i (u − u_i)² ≤ R_u²/4.
+//! Where that is not enough, e is evaluated on a lattice of k² small triangles and only what lies between its
+//! points is bounded so, of e itself or of its difference from the model: k² times less. Where even that is
+//! not enough, the lattice is made finer near the largest error only ([`Closer`]).
 //!
-//! **Sideways.** The image of an edge of T bends sideways by at most τ (the same formula for the in-plane normal m of the
-//! edge). A bend along an inner edge only shifts surface from one facet's side to its neighbour's: what it can cost is the slope
-//! of S against the facet times the shift; where the slope is large the error is √(N² + τ²). At a boundary edge the face ends
-//! at its curve: the lens between it and the image of the chord lies as near to the edge as the farther of the two.
+//! **Sideways.** The image of an edge of T bends sideways by at most τ (the same formula for the in-plane
+//! normal m of the edge). A bend along an inner edge only shifts surface from one facet's side to its
+//! neighbour's: what it can cost is the slope of S against the facet times the shift; where the slope is
+//! large the error is √(N² + τ²). At a boundary edge the face ends at its curve: the lens between it and the
+//! image of the chord lies as near to the edge as the farther of the two.
 
 use super::form::Form;
 use super::lattice::{Parts, Samples};
@@ -42,7 +45,8 @@ pub(super) fn bound(
     if bound.error <= enough {
         return bound;
     }
-    // Where even the least that the enclosures allow on an edge is too much, samples inside the facet cannot help.
+    // Where even the least that the enclosures allow on an edge is too much, samples inside the facet cannot
+    // help.
     let least = problem.least_on_edges();
     if least.iter().any(|&e| e > enough) {
         // Of the other edges this much is certain; their upper bounds are not worth knowing.
@@ -112,8 +116,8 @@ impl<'a, 'b> Problem<'a, 'b> {
         Some(Self { bounds, facet, enough, pieces, setting, centroid, sides, normal, sideways, rate })
     }
 
-    /// Steps 1 and 2: the bound, and the slope of the surface against the facet, infinite where it was not needed or is not
-    /// known.
+    /// Steps 1 and 2: the bound, and the slope of the surface against the facet, infinite where it was not
+    /// needed or is not known.
     fn by_derivatives(&self) -> (FacetBound, f64) {
         let Self { facet, setting, sideways, .. } = self;
         let quick = quick_parts(setting, &self.normal, sideways);
@@ -158,8 +162,8 @@ impl<'a, 'b> Problem<'a, 'b> {
             let bound = combine(facet, &found, slope);
             best.error = best.error.min(bound.error);
             best.edges = std::array::from_fn(|i| best.edges[i].min(bound.edges[i]));
-            // What lies between the samples shrinks with the square of their number: stop where even the finest lattice is
-            // too coarse.
+            // What lies between the samples shrinks with the square of their number: stop where even the
+            // finest lattice is too coarse.
             let (margin, room) = (bound.error - samples.along, enough - samples.along);
             let needed = parts as f64 * (margin / room).sqrt();
             if best.error <= enough || room <= 0.0 || parts >= FINEST || needed > 1.5 * FINEST as f64 {
@@ -229,8 +233,8 @@ fn quick_parts(setting: &Setting, normal: &Modelled, sideways: &[Modelled; 3]) -
         along_edges: std::array::from_fn(|i| on_edge(normal, i)),
         sideways: std::array::from_fn(|i| {
             let Modelled { form, cubic } = &sideways[i];
-            // Inside T the other two edges' terms are outweighed by the distance from this edge, unless T is very flat: of the
-            // cubic's terms those with λ_i weigh 1 − (1 − λ_i)³ ≤ 3 λ_i.
+            // Inside T the other two edges' terms are outweighed by the distance from this edge, unless T is
+            // very flat: of the cubic's terms those with λ_i weigh 1 − (1 − λ_i)³ ≤ 3 λ_i.
             let others = 0.5 * (cubic.h[(i + 1) % 3].abs() + cubic.h[(i + 2) % 3].abs())
                 + 3.0 * cubic.cubic_part()
                 + 0.5 * form.reach_along(setting.size);
@@ -249,7 +253,8 @@ fn combine(facet: &Facet, parts: &Parts, slope: f64) -> FacetBound {
         let leaning = if slope < 0.5 { parts.along + 2.0 * slope * shift } else { f64::INFINITY };
         error = error.max(leaning.min(parts.along.hypot(shift)));
         if facet.sag[i].is_some() {
-            // The image of the chord and the boundary curve both lie near the edge, which is convex: so does what is between.
+            // The image of the chord and the boundary curve both lie near the edge, which is convex: so does
+            // what is between.
             edges[i] = edges[i].hypot(parts.bends[i]);
             error = error.max(edges[i]);
         }

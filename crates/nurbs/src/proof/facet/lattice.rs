@@ -85,8 +85,8 @@ impl Samples {
         along.abs()
     }
 
-    /// Bounds from what was seen and what lies between; `weights` is the share by which values between samples may be larger
-    /// because the weight changes.
+    /// Bounds from what was seen and what lies between; `weights` is the share by which values between
+    /// samples may be larger because the weight changes.
     pub fn parts(&self, setting: &Setting, normal: &Modelled, forms: &[Modelled; 3], weights: f64) -> Parts {
         let grow = 1.0 + weights;
         let bends = std::array::from_fn(|i| {

@@ -1,8 +1,9 @@
 //! The error along the normal, looked at closely only where it is near what is allowed.
 //!
-//! A facet's lattice of 16² small triangles is walked like a quadtree: a triangle of the coarse lattice whose corners show little
-//! error is done with, because what may hide between them is known; the others are cut in four. Next to its largest error a
-//! facet so costs about as many points as the finest lattice has along an edge.
+//! A facet's lattice of 16² small triangles is walked like a quadtree: a triangle of the coarse lattice whose
+//! corners show little error is done with, because what may hide between them is known; the others are cut in
+//! four. Next to its largest error a facet so costs about as many points as the finest lattice has along an
+//! edge.
 
 use super::setting::{Modelled, Setting};
 use super::{Facet, lattice_point};
@@ -12,7 +13,8 @@ use glam::DVec3;
 /// The finest lattice cuts edges into so many parts.
 pub(super) const FINEST: usize = 16;
 
-/// Errors along the normal at the points (i, j) of the finest lattice, weights (i, j, 16 − i − j)/16; NaN where not evaluated.
+/// Errors along the normal at the points (i, j) of the finest lattice, weights (i, j, 16 − i − j)/16; NaN
+/// where not evaluated.
 #[derive(Debug)]
 pub(super) struct Errors([[f64; FINEST + 1]; FINEST + 1]);
 

@@ -1,9 +1,11 @@
-//! What one facet is bounded in: its axes and lengths, and one coordinate of the surface over it as a model with a remainder.
+//! What one facet is bounded in: its axes and lengths, and one coordinate of the surface over it as a model
+//! with a remainder.
 
 use super::form::{Cubic, Form};
 use glam::{DVec2, DVec3};
 
-/// What all stages of one bound share: the axes and lengths of the facet, and the least that is known of the surface.
+/// What all stages of one bound share: the axes and lengths of the facet, and the least that is known of the
+/// surface.
 pub(super) struct Setting {
     /// The facet's unit normal.
     pub n: DVec3,

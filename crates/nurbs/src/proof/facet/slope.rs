@@ -1,4 +1,5 @@
-//! How steep the surface can be against its facet, and how much its image can be distorted in the facet's plane.
+//! How steep the surface can be against its facet, and how much its image can be distorted in the facet's
+//! plane.
 
 use super::setting::{Modelled, Setting};
 use glam::DVec2;
@@ -17,15 +18,16 @@ pub(super) fn weight_slope(setting: &Setting, rate: DVec2, error: f64) -> f64 {
     })
 }
 
-/// How much the image of T is stretched, sheared or turned in the facet's plane against the facet, at most: |D(S − L)| there, in two
-/// directions at right angles. Below 1 the image is a graph over the facet's plane, and its slope is that over T divided by what is left.
+/// How much the image of T is stretched, sheared or turned in the facet's plane against the facet, at most:
+/// |D(S − L)| there, in two directions at right angles. Below 1 the image is a graph over the facet's plane,
+/// and its slope is that over T divided by what is left.
 pub(super) fn distortion(setting: &Setting, across: [&Modelled; 2], rate: DVec2) -> f64 {
     let [a, b] = across.map(|f| steepness(f, setting) + weight_distortion(setting, f, rate));
     a.hypot(b)
 }
 
-/// What a changing weight adds to it: of w·e the error of interpolation leaves out −Σ λ_i λ_j (w_i − w_j)(l_i − l_j), l the coordinate
-/// of L; and e itself is divided by the weight.
+/// What a changing weight adds to it: of w·e the error of interpolation leaves out −Σ λ_i λ_j (w_i − w_j)(l_i
+/// − l_j), l the coordinate of L; and e itself is divided by the weight.
 fn weight_distortion(setting: &Setting, f: &Modelled, rate: DVec2) -> f64 {
     if rate == DVec2::ZERO {
         return 0.0;
@@ -41,9 +43,9 @@ fn weight_distortion(setting: &Setting, f: &Modelled, rate: DVec2) -> f64 {
     product + weight_slope(setting, rate, size)
 }
 
-/// Bounds the slope of S over the facet: f = n·S has a derivative along side ij of at most
-/// ½ max(|h_ij|, |h_jk − h_ik|), six times the largest coefficient of the cubic part (a derivative's coefficients are three times
-/// differences of two), and the remainder's share; two sides give the gradient.
+/// Bounds the slope of S over the facet: f = n·S has a derivative along side ij of at most ½ max(|h_ij|,
+/// |h_jk − h_ik|), six times the largest coefficient of the cubic part (a derivative's coefficients are three
+/// times differences of two), and the remainder's share; two sides give the gradient.
 pub(super) fn steepness(normal: &Modelled, setting: &Setting) -> f64 {
     let Setting { d, length, size, kink, area2, .. } = setting;
     let (h, reach) = (&normal.cubic.h, &normal.form.reach);
