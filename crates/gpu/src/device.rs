@@ -19,7 +19,7 @@ pub struct Gpu {
 const IMMEDIATES: u32 = 64;
 
 impl Gpu {
-    /// Opens the best adapter of the kind asked for.
+    /// Opens the best adapter of the requested kind.
     ///
     /// # Errors
     /// [`GpuError::NoDevice`] where there is none, [`GpuError::Lacks`] where it cannot compute,

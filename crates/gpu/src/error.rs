@@ -6,10 +6,10 @@ use crate::device_choice::{ADVICE, BACKENDS, DeviceChoice};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// No adapter at all, or none of the kind asked for.
+    /// No adapter at all, or none of the requested kind.
     #[error("no {BACKENDS} device was found{choice}; {ADVICE}")]
     NoDevice {
-        /// The kind of adapter that was asked for.
+        /// The requested kind of adapter.
         choice: DeviceChoice,
     },
     #[error("the adapter {adapter} cannot be used: it lacks {what}")]

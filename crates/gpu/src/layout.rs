@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Span {
     pub window: u32,
-    /// The first control point that has a say.
+    /// The first control point with a basis function that is not zero.
     pub first: u32,
     pub degree: u32,
     /// Its number among the spans of its direction.

@@ -90,7 +90,7 @@ pub struct SurfaceSet<R> {
     pub(crate) windows: Vec<R>,
     /// Homogeneous, local: (w x, w y, w z, w).
     pub(crate) net: Vec<[R; 4]>,
-    /// The Bézier nets of all cells, the same way; empty unless asked for.
+    /// The Bézier nets of all cells, the same way; empty unless requested.
     pub(crate) bezier: Vec<[R; 4]>,
     wants_bezier: bool,
 }

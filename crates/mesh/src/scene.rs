@@ -38,7 +38,7 @@ pub struct ScenePart {
     pub face_bodies: Vec<u32>,
     /// The names of the bodies.
     pub body_names: Vec<String>,
-    /// One per face: the elementary surface under it, if it is one; empty where nobody asked.
+    /// One per face: the elementary surface under it, if it has one; empty if not requested.
     pub face_surfaces: Vec<Option<AnalyticFace>>,
     /// Triangles that the file had beside exact faces.
     pub pass_through: Vec<PassThrough>,

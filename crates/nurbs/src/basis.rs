@@ -95,7 +95,7 @@ pub(crate) fn mirrored(degree: usize, knots: &[f64]) -> Vec<f64> {
 
 /// The basis functions that do not vanish at a parameter, and their first `R - 1` derivatives.
 pub(crate) struct Basis<const R: usize> {
-    /// Index of the first control point that has a say.
+    /// Index of the first control point with a basis function that is not zero.
     pub first: usize,
     width: usize,
     stack: [[f64; STACK_WIDTH]; R],

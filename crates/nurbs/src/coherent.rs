@@ -10,7 +10,7 @@
 //! | same u | basis in v, row sums | q² + pq |
 //! | neither | both | p² + q² + pq |
 //!
-//! Points are asked for in the order of v, then u; as p² is what remains, u and v are swapped where p is the
+//! Points are evaluated in the order of v, then u; as p² is what remains, u and v are swapped where p is the
 //! larger degree ([`CoherentEvaluator::order`] sorts accordingly). Results are those of
 //! [`NurbsSurface::point`] to rounding: sums are taken in another order.
 

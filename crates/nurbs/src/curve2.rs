@@ -130,8 +130,8 @@ impl Curve2 {
     }
 
     /// The curve with both coordinates multiplied, each point keeping its parameter: units of lengths and
-    /// angles converted. `None` where the kind cannot say it (an offset or a slanted conic scaled unevenly);
-    /// convert with [`Curve2::to_nurbs`] first.
+    /// angles converted. `None` if no kind of curve can represent the result (an offset or a slanted conic
+    /// scaled unevenly); convert with [`Curve2::to_nurbs`] first.
     pub fn scaled(&self, by: DVec2) -> Option<Curve2> {
         Some(match self {
             Curve2::Line { origin, direction } => {

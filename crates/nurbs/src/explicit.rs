@@ -32,7 +32,7 @@ impl BezierCurve<DVec2> {
             return LineCrossings::Along;
         }
         let explicit: Vec<f64> = distances.iter().enumerate().map(|(i, d)| d * weight(i)).collect();
-        // Weights of one sign scale the distance; the smallest says what is surely on the line.
+        // Weights of one sign scale the distance; the smallest bounds what is certainly on the line.
         let least = (0..explicit.len()).fold(f64::INFINITY, |m, i| m.min(weight(i).abs()));
         LineCrossings::At(zeros(&explicit, zero * least))
     }

@@ -69,7 +69,7 @@ impl Surface {
 }
 
 impl<'a> SurfaceInverter<'a> {
-    /// Prepares inversions. `uv` says where the caller is at work: free-form surfaces are sampled there, and
+    /// Prepares inversions. `uv` is the region of interest: free-form surfaces are sampled there, and
     /// closed directions without a hint are placed in the turn that starts at its lower end. Closest points
     /// are found outside it too as long as they are in the surface's domain.
     pub fn new(surface: &'a Surface, uv: UvBox) -> Self {
@@ -128,7 +128,7 @@ impl<'a> SurfaceInverter<'a> {
         Inversion { uv, distance: self.surface.point(uv).distance(p_xyz) }
     }
 
-    /// Closed directions in the turn that is asked for.
+    /// Closed directions in the requested turn.
     fn placed(&self, p_uv: DVec2, near: Option<DVec2>) -> DVec2 {
         let mut placed = p_uv;
         for axis in 0..2 {

@@ -81,7 +81,7 @@ pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_surface::NurbsSurface;
 pub use passes::BasisTable;
 pub use proof::{
-    Ball4, ChordCriterion, ChordCut, Component, Facet, FacetBound, Piece, SurfaceBounds, Wrap, chord_bound,
+    ChordCriterion, ChordCut, Component, Facet, FacetBound, Piece, SurfaceBounds, Wrap, chord_bound,
     facet_bound,
 };
 pub use segment::{segment_distance, segment_foot};

@@ -29,7 +29,7 @@ type Cell = [f64; CHANNELS];
 #[derive(Clone, Debug)]
 pub struct BasisTable {
     degree: usize,
-    /// Per parameter the index of the first control point that has a say.
+    /// Per parameter the index of the first control point with a basis function that is not zero.
     first: Vec<usize>,
     /// Rows of `degree + 2` cells; row r holds the parameters 4r … 4r + 3.
     cells: Vec<Cell>,
@@ -63,7 +63,7 @@ impl BasisTable {
         self.passes
     }
 
-    /// The index of the first control point that has a say at parameter `i`.
+    /// The index of the first control point with a basis function that is not zero at parameter `i`.
     pub fn first(&self, i: usize) -> usize {
         self.first[i]
     }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 /// No joint of a part is wider than this share of its diagonal.
 pub(crate) const LARGEST_GAP: f64 = 2e-3;
-/// What coordinates are good for where the file says nothing, as a share of the diagonal: files with six
+/// The assumed accuracy of coordinates if the file states none, as a share of the diagonal: files with six
 /// digits.
 pub(crate) const RESOLUTION: f64 = 1e-6;
 /// A valley is clear where its upper end is so many times its lower one.
@@ -88,7 +88,8 @@ fn nearest_gaps(borders: &Borders) -> Vec<f64> {
 /// The distance of a border's point from the nearest other border.
 pub(crate) fn nearest_other(borders: &Borders, border: usize, t: f64) -> Option<f64> {
     let p = borders.all[border].curve.point(t);
-    // Chords of one border in a row are one valley: the curve is asked only where its chord is near enough.
+    // Chords of one border in a row are one valley: the curve is evaluated only where its chord is near
+    // enough.
     let mut best = f64::INFINITY;
     borders.tree.nearest(p, f64::INFINITY, |chord| {
         let (b, k) = borders.chords[chord as usize];

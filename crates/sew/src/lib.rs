@@ -5,11 +5,11 @@
 //! they do for solids:
 //!
 //! ```text
-//!   borders ([`border`])       edges with one use, as polylines in a tree; faces without loops get their natural ones
-//!   tolerance ([`gaps`])       `auto`: the file's own resolution and the valley in the histogram of nearest gaps
-//!   vertices ([`cluster`])     merged within the tolerance, transitively as long as nobody moves further than that
+//!   borders ([`border`])       edges with one use, as polylines in a tree; natural borders of bare faces
+//!   tolerance ([`gaps`])       `auto`: from the file's resolution and the histogram of nearest gaps
+//!   vertices ([`cluster`])     merged within the tolerance; none moves further than the tolerance
 //!   T-ends ([`cut`])           an edge is cut where a vertex of another one lies on it: overlaps, chains
-//!   pieces ([`pair`])          pieces between the same two vertices that run along each other become one edge
+//!   pieces ([`pair`])          pieces between the same vertices that run along each other become one edge
 //!   rebuild ([`rebuild`])      coedges of several faces refer to one edge
 //!   shells ([`shells`])        faces agree which way is out; what closes becomes a solid
 //! ```

@@ -19,7 +19,7 @@ const ALL_WAYS: usize = 6;
 const ON_EACH_OTHER: f64 = 0.98;
 /// Faces are compared this share of a piece's length away from it.
 const BESIDE: f64 = 0.05;
-/// And at least this many tolerances; pieces shorter than twice that tell nothing.
+/// And at least this many tolerances; pieces shorter than twice that give no direction.
 const FAR: f64 = 20.0;
 /// A face whose border runs along itself is a seam where the rest of it is longer than this many tolerances.
 const SEAM_REST: f64 = 8.0;

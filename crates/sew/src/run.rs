@@ -26,7 +26,7 @@ pub enum SewTolerance {
     Length(f64),
 }
 
-/// True where the file says which faces meet: some edge is used by two.
+/// True if the file has topology: some edge is used by two faces.
 pub fn has_topology(part: &Part) -> bool {
     let other_face = |uses: &Vec<Use>| uses.iter().any(|u| u.face != uses[0].face);
     edge_uses(part).iter().any(|uses| uses.len() > 1 && other_face(uses))
@@ -207,7 +207,7 @@ impl Sewing<'_> {
         let flipped: Vec<bool> = sewn.faces.iter().map(|f| f.flipped).collect();
         let mut has_border = vec![false; sewn.faces.len()];
         self.borders.all.iter().for_each(|b| has_border[b.of.face as usize] = true);
-        // A whole surface that is closed in itself is a shell, whatever the file says.
+        // A whole surface that is closed in itself is a shell, independent of the file.
         let in_open = sewn.shells.iter().filter(|s| !s.closed).flat_map(|s| &s.faces);
         in_open.filter(|f| is_whole(&sewn, **f)).for_each(|f| has_border[f.index()] = true);
         let affected = affected(&sewn, &has_border);

@@ -76,7 +76,8 @@ pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, l
     found
 }
 
-/// A volume smaller than this share of what it is the sum of is lost in the quadrature: the mesh will tell.
+/// A volume smaller than this share of what it is the sum of is lost in the quadrature; its sign is then
+/// taken from the mesh.
 const SURE: f64 = 1e-3;
 
 /// Turns over the new closed shells whose volume has the wrong sign: that of an outer one is positive, a

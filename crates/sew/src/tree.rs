@@ -1,4 +1,4 @@
-//! A tree of boxes over the chords of all borders: built by halving at the median, asked for boxes and
+//! A tree of boxes over the chords of all borders: built by halving at the median, for queries by box and for
 //! nearest items.
 
 use chordal_nurbs::Box3;

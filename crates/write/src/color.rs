@@ -1,4 +1,4 @@
-//! Colours: linear in the scene and in glTF, sRGB bytes in formats that say or mean so.
+//! Colours: linear in the scene and in glTF, sRGB bytes in the other formats.
 
 use chordal_mesh::Rgba;
 

@@ -35,7 +35,7 @@ pub enum WriteError {
     NotFinite {
         /// The name of the part, or of the placed part in formats without a tree.
         part: String,
-        /// The format that was asked for.
+        /// The requested format.
         format: Format,
         /// The first coordinate, in the unit and axes of the file.
         x: f64,
@@ -51,7 +51,7 @@ pub enum WriteError {
         what: Countable,
         /// How many there are.
         count: u64,
-        /// The format that was asked for.
+        /// The requested format.
         format: Format,
     },
     /// The scene contradicts itself: an index is out of range, or its nodes form no tree.

@@ -65,13 +65,14 @@ impl Format {
         matches!(self, Self::Glb | Self::Gltf)
     }
 
-    /// The unit written unless options say otherwise: metres in glTF, as its specification demands, else
+    /// The unit written unless the options set another: metres in glTF, as its specification demands, else
     /// millimetres.
     pub fn default_unit(self) -> Unit {
         if self.is_gltf() { Unit::Metre } else { Unit::Millimetre }
     }
 
-    /// The axis that points up unless options say otherwise: Y in glTF, as its specification demands, else Z.
+    /// The axis that points up unless the options set another: Y in glTF, as its specification demands, else
+    /// Z.
     pub fn default_up(self) -> UpAxis {
         if self.is_gltf() { UpAxis::Y } else { UpAxis::Z }
     }

@@ -3,7 +3,7 @@
 use crate::{UpAxis, WriteOptions};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// The file's coordinate system: rotated so that the asked axis is up, then scaled to its unit.
+/// The file's coordinate system: rotated so that the chosen axis is up, then scaled to its unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     /// A rotation whose entries are 0 and ±1, so that applying it rounds nothing.

@@ -14,7 +14,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 use std::io::Write;
 
-/// Writes the mesh; materials are named only if `library` says where they are.
+/// Writes the mesh; materials are named only if there is a `library`.
 pub(crate) fn write(
     scene: &Scene,
     out: &mut impl Write,

@@ -197,7 +197,7 @@ fn write_solid(
     Ok(())
 }
 
-/// The line of each used point: most points are corners of six triangles, and digits are dear.
+/// The line of each used point: most points are corners of six triangles, and formatting digits is slow.
 #[derive(Debug, Default)]
 struct VertexLines {
     text: Vec<u8>,

@@ -72,7 +72,7 @@ pub struct Camera {
 
 impl Camera {
     /// Looks at the points, all of which end up in the picture of `size` pixels with a margin; `zoom` above 1
-    /// comes nearer. A camera at a place of its own is moved only where `fit` asks for it.
+    /// comes nearer. A camera at a place of its own is moved only if `fit` is set.
     pub fn looking_at(
         view: View,
         projection: Projection,

@@ -34,7 +34,7 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    /// What an error in the part's units asks for.
+    /// The samples that an error in the part's units needs.
     pub fn of(face: &TrimmedFace, error: f64) -> Self {
         // A texel is half as large as the pixel that shows it: the error is half a pixel.
         let texels = face.stretch.map(|s| (s / error * (0.5 / PIXEL_ERROR)).clamp(TEXELS[0], TEXELS[1]));
@@ -122,7 +122,7 @@ impl TrimmedFace {
         })
     }
 
-    /// With what the border asks for.
+    /// With the samples that the border needs.
     pub(crate) fn with_border(mut self) -> Self {
         self.measure_border();
         self
@@ -210,7 +210,7 @@ mod tests {
         }
     }
 
-    /// Between the errors that a choice says it serves, it does, and at what it was made for.
+    /// A choice serves all errors between those that it reports, and the one it was made for.
     #[test]
     fn errors_served_are_served() {
         let net = |i: usize, j: usize| DVec3::new(i as f64, j as f64, ((i * j) as f64).sin());

@@ -65,7 +65,7 @@ pub(crate) struct Member<'a> {
 }
 
 impl<'a> Member<'a> {
-    /// As `choice` says, or as finely as `most` points allow.
+    /// As fine as `choice`, or as `most` points allow.
     pub fn new(
         face: &'a TrimmedFace,
         location: FaceLocation,
@@ -341,7 +341,7 @@ impl Plan {
         cells
     }
 
-    /// Draws the trim texture, and tells the faces where they are in it.
+    /// Draws the trim texture, and stores in the faces their places in it.
     fn draw_trims(
         &mut self,
         gpu: &Gpu,

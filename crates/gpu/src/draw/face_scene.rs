@@ -1,8 +1,8 @@
 //! Exact faces drawn again and again: what a frame can use of those before it is not evaluated anew.
 //!
 //! 1. Placements and faces that the view cannot show are rejected by bounds (`visible.rs`).
-//! 2. Each face that is left is asked how fine it must be (`choice.rs`). Where samples that are there serve,
-//!    they are kept.
+//! 2. For each face that is left the needed fineness is computed (`choice.rs`). Where samples that are there
+//!    serve, they are kept.
 //! 3. The others are evaluated together, in one dispatch for each store, and become a batch (`batch.rs`).
 //! 4. Batches that hold little of use are evaluated anew with them, so that there are never many.
 

@@ -22,8 +22,8 @@ struct StillLevel {
 }
 
 impl StillFrame {
-    /// Of a frame; `served` says of a level between which errors the samples of each face serve, if all faces
-    /// have samples.
+    /// Of a frame; `served` gives for a level the errors between which the samples of each face serve, if all
+    /// faces have samples.
     pub fn of(
         visible: &Visible,
         counts: &FrameCounts,
@@ -46,8 +46,8 @@ impl StillFrame {
         Some(Self { levels, counts: FrameCounts { evaluated: 0, points: 0, ..*counts } })
     }
 
-    /// The counts of a frame that needs nothing else; `closed` says which parts may have faces that are left
-    /// out for showing their backs.
+    /// The counts of a frame that needs nothing else; `closed` marks the parts that may have faces that are
+    /// left out for showing their backs.
     pub fn counts(&self, visible: &Visible, leave_out_backs: bool, closed: &[bool]) -> Option<FrameCounts> {
         let same = |(was, is): (&StillLevel, &Level)| {
             (was.shape, was.class, &was.placed) == (is.shape, is.class, &is.placed)

@@ -2,12 +2,12 @@
 //! one point, drawn so that each turns what it covers, several faces to a texture through its colour
 //! channels.
 //!
-//! 1. Each face asks for a rectangle of texels; rectangles are packed onto planes, four planes (the channels)
+//! 1. Each face gets a rectangle of texels; rectangles are packed onto planes, four planes (the channels)
 //!    a layer.
 //! 2. Each piece of its loops is cut into chords that keep within an eighth of a texel.
 //! 3. One pass a layer draws all fans, four samples a texel. Triangles turn 0 into 1 and 1 into 0 at every
 //!    sample; the texture keeps the share of the samples that are inside.
-//! 4. Drawing a face asks its channel between the texels and discards what has less than a half.
+//! 4. Drawing a face samples its channel between the texels and discards what has less than a half.
 //!
 //! Unlike the exact test it has the resolution that it was made for: closer up, curves show the texels.
 
@@ -152,7 +152,8 @@ impl TrimTextures {
         let attachment = TextureUsages::RENDER_ATTACHMENT;
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
         let kept = texture(layers, 1, usage);
-        // Not resolved into its layer at once: Mesa 22's lavapipe takes the first layer whichever it is told.
+        // Not resolved into its layer at once: Mesa 22's lavapipe resolves into the first layer whichever is
+        // given.
         let resolved = texture(1, 1, attachment | TextureUsages::COPY_SRC);
         let resolved_view = resolved.create_view(&Default::default());
         let samples = texture(1, SAMPLES, attachment).create_view(&Default::default());

@@ -56,7 +56,7 @@ fn lit(color: vec3<f32>, direction: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
 
 // Which of a pixel's four samples a face of this opacity covers: stochastic transparency (Enderton, Sintorn,
 // Shirley, Luebke 2010) with patterns of 4 × 4 pixels in place of noise, so that the order of drawing does
-// not matter. From pixel to pixel the samples turn by as much as one of 16 patterns says: over two faces of
+// not matter. From pixel to pixel the samples turn by one of 16 patterns: over two faces of
 // different patterns, as over front and back of one, about every choice of one meets every choice of the
 // other.
 fn veil(opacity: f32, at: vec4<f32>, front: bool, seed: u32) -> u32 {

@@ -116,11 +116,11 @@ pub(crate) struct Level {
     pub placed: Range<u32>,
     /// Every placement is in the picture as a whole.
     pub whole: bool,
-    /// Placements to view, for rejecting faces; empty where they are too many to be asked one by one.
+    /// Placements to view, for rejecting faces; empty if they are too many to be tested one by one.
     views: Vec<(DAffine3, Eye)>,
 }
 
-/// More placements than this are not asked face by face.
+/// Above this number, placements are not tested face by face.
 const ASKED: usize = 16;
 
 impl Level {

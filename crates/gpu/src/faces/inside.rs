@@ -1,9 +1,9 @@
 //! Twin of `trim.wgsl`, and the search structure that both read.
 //!
 //! Loops are cut into cubic Bézier pieces that rise in y. A face's unit square is cut into bands of y; each
-//! lists the pieces that reach into it. A point asks the pieces of its band only, and most of those are
-//! decided by their control points. Pieces share their ends to the bit and own their lower end only, so that
-//! a ray through a joint counts once.
+//! lists the pieces that reach into it. A point is tested against the pieces of its band only, and most of
+//! those are decided by their control points. Pieces share their ends to the bit and own their lower end
+//! only, so that a ray through a joint counts once.
 //!
 //! A map of square cells over the unit square comes first: cells that no loop enters are known to be inside
 //! or outside as a whole. Only points in the others, a few in a hundred, ask for pieces.
@@ -44,7 +44,7 @@ impl TrimTable {
         let mut map = Map::of(loops);
         self.lists.push(map.side as u32);
         let map_at = self.lists.len();
-        // All cells are to be asked until they have been.
+        // All cells count as undecided until they have been tested.
         self.lists.extend(std::iter::repeat_n(u32::MAX, (map.side * map.side).div_ceil(16)));
         let mut next = (self.lists.len() + bands + 1) as u32;
         self.lists.push(next);
@@ -124,7 +124,7 @@ fn cubic([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     ((a * s + 3.0 * b * t) * s + 3.0 * c * t * t) * s + d * t * t * t
 }
 
-/// As `inside` of the shader, which asks for four places at once.
+/// As `inside` of the shader, which tests four places at once.
 pub(crate) fn inside(table: &TrimTable, range: TrimRange, p: [f32; 2]) -> bool {
     if range.bands == 0 {
         return true;

@@ -3,7 +3,7 @@
 // direction.
 
 @group(0) @binding(5) var<storage, read> pieces: array<vec4<f32>>;
-// Per face: the side of its map, the map (two bits a cell: 0 outside, 1 inside, 2 to be asked), bands + 1
+// Per face: the side of its map, the map (two bits a cell: 0 outside, 1 inside, 2 to be tested), bands + 1
 // offsets into the list of pieces, then that list.
 @group(0) @binding(6) var<storage, read> lists: array<u32>;
 

@@ -2,7 +2,7 @@
 //!
 //! A ray from outside such a shell meets its outside first. Closed means: every side of a triangle is that of
 //! one other triangle too, run the other way round; the right way out means: the shell's volume is positive.
-//! Shells that are turned inside out in places only, so that they cut through themselves, are not told apart.
+//! Shells that are turned inside out in places only, so that they cut through themselves, are not detected.
 
 use chordal_mesh::PartMesh;
 use chordal_nurbs::DVec3;

@@ -6,7 +6,7 @@
 
 use super::model::TrimmedFace;
 
-/// Points of one face at most; a view that asks for more sees the difference only where the face fills it
+/// Points of one face at most; a view that needs more shows the difference only where the face fills it
 /// many times.
 const MOST: f64 = 2048.0;
 const MOST_POINTS: f64 = 400_000.0;
@@ -32,7 +32,7 @@ pub(crate) fn steps(face: &TrimmedFace, error: f64) -> [f64; 2] {
 /// The smallest and the largest error that so many steps serve, being at most twice what is needed.
 pub(crate) fn errors_served(face: &TrimmedFace, steps: [f64; 2]) -> [f64; 2] {
     if 4.0 * steps[0] * steps[1] > MOST_POINTS || steps.iter().any(|s| *s >= MOST) {
-        // What the limits have cut is asked for each time.
+        // What the limits have cut is requested again each time.
         return [f64::INFINITY, 0.0];
     }
     let of = |axis: usize| {

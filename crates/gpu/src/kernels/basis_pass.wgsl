@@ -1,6 +1,6 @@
 // One pass of the paper's basis evaluation, from one degree to the next. Thread: one column of one row.
 //
-// The text after this one says how rows store their knots: `value` is what one row holds in one column (a
+// The text after this one defines how rows store their knots: `value` is what one row holds in one column (a
 // number, or a vector of four rows at once), `rows` and `windows` are its buffers, and `degree_of`,
 // `parameter_of`, `first_knot` its access.
 

@@ -79,7 +79,7 @@ pub(crate) fn jets<R: Real>(inputs: &Inputs<R>, out: &mut [R]) {
     }
 }
 
-/// The derivatives that `planes` asks for.
+/// The derivatives that `planes` selects.
 fn jet_of<R: Real>(inputs: &Inputs<R>, s: &Sample) -> Jet<R> {
     let planes = inputs.params.planes as usize;
     let (u, v) = (inputs.span(s.row_u), inputs.span(s.row_v));

@@ -1,6 +1,6 @@
 // Sums control points times basis functions. Thread: one point.
 //
-// The text after this one says where functions come from: `prepare` finds those of a sample, `along_u` and
+// The text after this one defines where functions come from: `prepare` finds those of a sample, `along_u` and
 // `along_v` give the function, or its derivative of order `plane`, of one column.
 
 @compute @workgroup_size(64)
@@ -26,7 +26,7 @@ fn points(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_ind
     write_point(sample, sum);
 }
 
-// The derivatives that `planes` asks for.
+// The derivatives that `planes` selects.
 fn jet_of(sample: Sample) -> Jet {
     let head = heads[sample.head];
     let span_u = spans[rows[sample.row_u].span];

@@ -1,4 +1,4 @@
-//! STL, binary and ASCII. Normals are ignored: the order of the corners says the same.
+//! STL, binary and ASCII. Normals are ignored: the order of the corners gives the same direction.
 
 use super::bytes::{Cursor, number, text, words};
 use super::error::{Fault, ImportFault, ImportPlace};

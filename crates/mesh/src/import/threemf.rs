@@ -11,7 +11,7 @@ use std::io::{Cursor, Read};
 
 /// The largest ratio of unpacked text to the whole file that is read.
 ///
-/// The XML of a mesh compresses by less than 30. A smaller limit could refuse honest files; without one a
+/// The XML of a mesh compresses by less than 30. A smaller limit could refuse valid files; without one a
 /// file of a kilobyte could fill the memory.
 const MOST_RATIO: u64 = 200;
 
@@ -35,7 +35,7 @@ struct Model {
 pub(super) fn read(bytes: &[u8], builder: &mut Builder) -> Result<(), Fault> {
     let text = model_text(bytes)?;
     let model = parse(&text, builder)?;
-    // The number of objects bounds the depth of an honest file; what is deeper goes in circles.
+    // The depth of a tree is at most the number of its objects; a deeper path contains a cycle.
     let most_depth = model.objects.len();
     let (mut triangles, mut placed) = (0, 0);
     for &(item, transform) in &model.items {

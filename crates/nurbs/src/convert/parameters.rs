@@ -120,7 +120,7 @@ impl Curve {
                     let segment = &segments[i];
                     let (s0, s1) = super::curve::part_of(i, range);
                     let own = segment.curve.nurbs_parameters(segment.own_range(s0, s1));
-                    // Outside the range asked for there is no form to agree with.
+                    // Outside the requested range there is no NURBS form to agree with.
                     Ok((segment.start, segment.end, if s0 < s1 { own? } else { ParameterMap::Identity }))
                 };
                 ParameterMap::Pieces((0..segments.len()).map(piece).collect::<Result<_, NurbsError>>()?)

@@ -4,7 +4,7 @@ use crate::bisect::bisect;
 use crate::{Curve, Curve2, Range, Surface, UvBox};
 use glam::DVec2;
 
-/// More continuity than any knot of the largest degree leaves: asks for every knot.
+/// More continuity than any knot of the largest degree leaves: every knot counts as a break.
 pub(crate) const ANY: usize = 2 * crate::basis::MAX_DEGREE;
 
 /// Samples of a curve in parameter space between which one crossing of a knot line is looked for.

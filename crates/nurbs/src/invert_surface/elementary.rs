@@ -4,7 +4,7 @@ use crate::invert_curve::ON_AXIS;
 use crate::{Frame, Surface};
 use glam::{DVec2, DVec3};
 
-/// Two candidates whose distances differ by less than this part of the size are told apart by the hint.
+/// Two candidates whose distances differ by less than this part of the size are distinguished by the hint.
 const TIE: f64 = 1e-9;
 
 /// A point in the half plane of the axis.

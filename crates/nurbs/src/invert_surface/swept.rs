@@ -73,7 +73,7 @@ impl<'a> ExtrusionInverter<'a> {
                 let jet = self.profile.curve.jet(t);
                 [across(jet.p - p), across(jet.d1), across(jet.d2)]
             };
-            // How far along the sweep the point lies says nothing about the profile's parameter.
+            // The position along the sweep is independent of the profile's parameter.
             let base = self.profile.curve.point(self.profile.range.clamp(0.0));
             let flat = base + across(p - base);
             self.profile.closest(flat, |c| across(c - p), residual, near.map(|n| n.x))

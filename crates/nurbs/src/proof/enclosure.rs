@@ -17,7 +17,7 @@ use swept::{ProfileTable, Thirds};
 
 /// Homogeneous vectors near `center`: the spatial part within `radius`, the weight within `weight_radius`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ball4 {
+struct Ball4 {
     /// The middle of the ball: spatial part and weight.
     pub center: DVec4,
     /// The radius of the spatial part.

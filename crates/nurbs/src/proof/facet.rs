@@ -34,7 +34,7 @@ pub struct Facet {
 /// Upper bound of the two-sided distance between the surface over the triangle and the facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetBound {
-    /// The bound for the whole facet; infinite where nothing can be said.
+    /// The bound for the whole facet; infinite if nothing can be proven.
     pub error: f64,
     /// The share of the edge opposite corner i alone, which no point inside the facet can lower. Where
     /// `error` is far beyond what is enough, only a lower bound.
@@ -95,7 +95,7 @@ pub fn facet_bound(
 
 /// Upper bound of the distance between the image of a segment of parameter space and the chord between its
 /// ends' points; from second derivatives about the segment only, in so many equal `parts`, however wild the
-/// surface is beside it. Infinite where nothing can be said.
+/// surface is beside it. Infinite if nothing can be proven.
 pub fn chord_bound(
     bounds: &SurfaceBounds<'_>,
     uv: [DVec2; 2],

@@ -165,7 +165,7 @@ fn reduced(curve: BezierCurve<DVec3>, options: &LiftOptions) -> (BezierCurve<DVe
         return (lean, error);
     }
     let mut best = lean.clone();
-    // The bound is monotone enough: what a degree less would cost is asked until it costs too much.
+    // The bound is monotone enough: the degree is lowered one by one until the bound is too large.
     while best.degree() > options.degree_cap {
         let (lower, cost) = crate::degree::reduced_to(&lean, best.degree() - 1);
         if !(cost <= options.allowance) {

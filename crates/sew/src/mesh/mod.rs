@@ -2,12 +2,12 @@
 //! Rendering in OpenSG Plus.
 //!
 //! ```text
-//!   boundaries ([`boundary`])   border edges in chains; vertices in which chains touch are taken apart
-//!   closest points ([`closest`]) of every border vertex the nearest point of every border within the tolerance
-//!   tracking ([`track`])        proximities followed along both borders, several at once, foldings left out; vertices between
-//!                               two correspondences get theirs by length (the common reparametrisation)
-//!   joining ([`join`])          new vertices split their triangles, corresponding ones move to their middle and are one
-//!   shells ([`shells`])         joined meshes agree which way is out
+//!   boundaries ([`boundary`])    border edges in chains; vertices in which chains touch are separated
+//!   closest points ([`closest`]) for every border vertex the nearest point of each border within the tolerance
+//!   tracking ([`track`])         proximities followed along both borders, without folds; vertices between two
+//!                                correspondences get theirs by length (the common reparametrisation)
+//!   joining ([`join`])           new vertices split triangles; corresponding ones meet in their middle
+//!   shells ([`shells`])          joined meshes get a common orientation
 //! ```
 //!
 //! Where the paper reparametrises a common border by its whole length, this does so between neighbouring

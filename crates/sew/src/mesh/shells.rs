@@ -33,7 +33,7 @@ pub(crate) fn finish(joined: Joined, report: &mut MeshSewReport) -> SewnMesh {
         closed[mesh.shells[t] as usize] &= !open[t];
         changed[mesh.shells[t] as usize] |= turn[t];
     }
-    // Of a closed shell that had to be put in order, the volume says which way is out.
+    // The sign of the volume of a closed shell gives its orientation.
     let inside_out = volumes(&mesh, &turn, oriented.components);
     for t in 0..count {
         let shell = mesh.shells[t] as usize;
@@ -50,7 +50,7 @@ pub(crate) fn finish(joined: Joined, report: &mut MeshSewReport) -> SewnMesh {
     mesh
 }
 
-/// Six times the volume of every shell, its triangles turned as said.
+/// Six times the volume of every shell, its triangles reversed where `turn` is set.
 fn volumes(mesh: &SewnMesh, turn: &[bool], shells: usize) -> Vec<f64> {
     let mut origin = vec![None; shells];
     let mut six = vec![0.0; shells];

@@ -116,7 +116,7 @@ impl<'a> Mesh<'a> {
         }))
     }
 
-    /// Whether every edge has exactly one triangle on each side: 3MF asks that of objects of type `model`.
+    /// Whether every edge has exactly one triangle on each side: 3MF demands it of objects of type `model`.
     fn is_closed(&self) -> bool {
         let key = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
         let directed = |&([a, b, c], _): &([u32; 3], _)| [key(a, b), key(b, c), key(c, a)];

@@ -1,4 +1,4 @@
-//! The cells of a NURBS surface: its Bézier patches, cut as finely as the boxes asked for.
+//! The cells of a NURBS surface: its Bézier patches, cut about as finely as the requested boxes.
 //!
 //! A box is covered by cells about as large as itself: larger ones would be looser than need be, smaller ones
 //! more than need be. So there are levels of cells, each half as large, in each direction, made when first
@@ -20,7 +20,7 @@ const SLACK: f64 = 0.02;
 /// The cells of one patch at one pair of levels, row by row.
 type Level = Vec<OnceLock<Box<Cell>>>;
 
-/// The cells of one patch, made when first asked for.
+/// The cells of one patch, made on first use.
 #[derive(Clone, Debug, Default)]
 struct PatchCells(OnceLock<Levels>);
 

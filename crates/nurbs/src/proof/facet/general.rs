@@ -73,7 +73,7 @@ struct Problem<'a, 'b> {
 }
 
 impl<'a, 'b> Problem<'a, 'b> {
-    /// `None` where nothing can be said: a facet without area, or a surface without enclosures.
+    /// `None` if nothing can be proven: a facet without area, or a surface without enclosures.
     fn new(
         bounds: &'a SurfaceBounds<'b>,
         facet: &'a Facet,
