@@ -33,8 +33,8 @@ impl Ball4 {
     }
 }
 
-/// A smooth cell of a surface: derivatives of its homogeneous form (A, w), measured from `origin`, S = origin
-/// + A/w.
+/// A smooth cell of a surface: derivatives of its homogeneous form (A, w), measured from `origin`,
+/// S = origin + A/w.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Cell {
     origin: DVec3,
