@@ -1,8 +1,8 @@
 //! How many samples a view needs: continuously, and in each direction by itself.
 //!
-//! A cell of h × k in the parameters, drawn as two triangles, departs from the surface by at most (h² |S_uu|
-//! + 2 h k |S_uv| + k² |S_vv|) / 8. Each direction gets half of what is allowed, after the mixed term has
-//! been shared between the squares: 2 h k m ≤ m (r h² + k²/r) with r the ratio of the two.
+//! A cell of h × k in the parameters, drawn as two triangles, departs from the surface by at most
+//! (h² |S_uu| + 2 h k |S_uv| + k² |S_vv|) / 8. Each direction gets half of the allowed error, after the
+//! mixed term has been shared between the squares: 2 h k m ≤ m (r h² + k²/r) with r the ratio of the two.
 
 use super::model::TrimmedFace;
 
