@@ -345,7 +345,7 @@ def rhino_cut(path: Path) -> None:
     path.write_bytes(whole[: second + 1000])
 
 
-@file("rhino_head.3dm", "a head and nothing else", faces=0, exits="2", phrase="holds no surface")
+@file("rhino_head.3dm", "a head and nothing else", faces=0, exits="2", phrase="no shape")
 def rhino_head(path: Path) -> None:
     path.write_bytes(b"3D Geometry File Format        5")
 

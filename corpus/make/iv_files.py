@@ -173,28 +173,28 @@ def binary() -> bytes:
     return b.data
 
 
-@bad("truncated", "the file ends within a list", exit="2", phrase="the file ends within")
+@bad("truncated", "the file ends within a list", exit="2", phrase="truncated inside this entity")
 def truncated() -> str:
     text = patch()
     return text[: text.index("1 1 1")] + "1 1 1"
 
 
-@bad("truncated_later", "the file ends behind a surface", exit="01", phrase="the file ends within")
+@bad("truncated_later", "the file ends behind a surface", exit="01", phrase="truncated inside this entity")
 def truncated_later() -> str:
     return patch()[:-3]
 
 
-@bad("no_points", "a surface without coordinates", exit="2", phrase="no coordinates come before it")
+@bad("no_points", "a surface without coordinates", exit="2", phrase="no coordinates before it")
 def no_points() -> str:
     return HEADER + SURFACE
 
 
-@bad("one_of_two", "one surface whose knots do not fit beside a sound one", exit="1", phrase="make no spline")
+@bad("one_of_two", "one surface whose knots do not fit beside a sound one", exit="1", phrase="order of")
 def one_of_two() -> str:
     return patch() + group(coordinates(hill()), SURFACE.replace("u" + "KnotVector [ 0 0 0 1 1 1 ]", "uKnotVector [ 0 ]"))
 
 
-@bad("decreasing_knots", "knots that decrease are replaced", exit="01", phrase="even ones are used")
+@bad("decreasing_knots", "knots that decrease are replaced", exit="01", phrase="uniform knots used")
 def decreasing_knots() -> str:
     return patch().replace("vKnotVector [ 0 0 0 1 1 1 ]", "vKnotVector [ 0 0 1 0 1 1 ]")
 
@@ -216,7 +216,7 @@ def zero_weight() -> str:
     return HEADER + group(coordinates([(*p, 0.0 if k == 4 else 1.0) for k, p in enumerate(hill())], 4), SURFACE)
 
 
-@bad("use_of_nothing", "a name that nobody has", exit="01", phrase="no node of this name")
+@bad("use_of_nothing", "a name that nobody has", exit="01", phrase="node Nobody is not defined")
 def use_of_nothing() -> str:
     return patch() + "USE Nobody\n"
 
@@ -226,23 +226,23 @@ def itself() -> str:
     return HEADER + "DEF A " + group(coordinates(hill()), SURFACE, "USE A\n")
 
 
-@bad("bomb", "uses of uses, four to the power of forty", exit="01", phrase="used too often")
+@bad("bomb", "uses of uses, four to the power of forty", exit="01", phrase="too many references")
 def bomb() -> str:
     text = HEADER + "DEF N0 " + group(coordinates(hill()), SURFACE)
     return text + "".join(f"DEF N{i} " + group(*[f"USE N{i - 1}\n"] * 4) for i in range(1, 41))
 
 
-@bad("deep", "groups within groups, a thousand deep", exit="2", phrase="deeper than")
+@bad("deep", "groups within groups, a thousand deep", exit="2", phrase="is recursive or nested")
 def deep() -> str:
     return HEADER + "Group { " * 1000 + "Cube { }" + " }" * 1000
 
 
-@bad("nothing", "nodes without a shape", exit="2", phrase="no node is a shape")
+@bad("nothing", "nodes without a shape", exit="2", phrase="no shape in 2 entities")
 def nothing() -> str:
     return HEADER + group("Material { diffuseColor 1 0 0 }\n")
 
 
-@bad("binary_stranger", "a binary file with a node that nobody knows: what came before stays", exit="01", phrase="what comes after is left out")
+@bad("binary_stranger", "a binary file with a node that nobody knows: what came before stays", exit="01", phrase="the rest of the file is ignored")
 def binary_stranger() -> bytes:
     b = Binary()
     b.node("Separator", 0, 3).word(3)
@@ -251,7 +251,7 @@ def binary_stranger() -> bytes:
     return b.data
 
 
-@bad("binary_lengths", "a binary file with a list longer than the file", exit="2", phrase="ends within a node")
+@bad("binary_lengths", "a binary file with a list longer than the file", exit="2", phrase="truncated inside this entity")
 def binary_lengths() -> bytes:
     return Binary().node("Coordinate3", 1).text("point").word(0x3FFFFFFF).floats([1, 2, 3]).data
 

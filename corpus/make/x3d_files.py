@@ -198,17 +198,17 @@ def polygons() -> str:
     return CLASSIC + shapes + "Shape { geometry ElevationGrid { xDimension 2 zDimension 2 height [ 0 0 0 1 ] } }\n"
 
 
-@bad("truncated_xml", "the file ends within an element", exit="01", phrase="the file ends within")
+@bad("truncated_xml", "the file ends within an element", exit="01", phrase="the file is truncated")
 def truncated_xml() -> str:
     return patch_xml().split("</Scene>")[0]
 
 
-@bad("broken_xml", "no XML behind the first shape", exit="01", phrase="no XML from here on")
+@bad("broken_xml", "no XML behind the first shape", exit="01", phrase="syntax error")
 def broken_xml() -> str:
     return patch_xml().split("</Scene>")[0] + "<Group DEF='"
 
 
-@bad("few_points", "fewer points than the net needs", exit="2", phrase="control points where 3")
+@bad("few_points", "fewer points than the net needs", exit="2", phrase="number of control points is 8, at least 9")
 def few_points() -> str:
     return patch_classic().replace(", 2 2 0", "")
 
@@ -223,7 +223,7 @@ def bent_sweep() -> str:
     return swept().split("Transform")[0].replace("0 3 1", "0 3 1, 1 4 1")
 
 
-@bad("script", "a prototype whose points a script would compute", exit="2", phrase="0 control points")
+@bad("script", "a prototype whose points a script would compute", exit="2", phrase="number of control points is 0")
 def script() -> str:
     return CLASSIC + (
         "PROTO Made [ ] { NurbsPatchSurface { uDimension 3 vDimension 3 controlPoint DEF P Coordinate { } }\n"
@@ -231,12 +231,12 @@ def script() -> str:
     )
 
 
-@bad("inline", "another file is not followed", exit="01", phrase="not followed")
+@bad("inline", "another file is not followed", exit="01", phrase="which is not read")
 def inline() -> str:
     return patch_classic() + 'Inline { url "other.x3dv" }\n'
 
 
-@bad("bomb", "uses of uses, four to the power of forty", exit="01", phrase="used too often")
+@bad("bomb", "uses of uses, four to the power of forty", exit="01", phrase="too many references")
 def bomb() -> str:
     text = VRML + "DEF N0 Shape { geometry Box { } }\n"
     return text + "".join(f"DEF N{i} Group {{ children [ {f'USE N{i - 1} ' * 4}] }}\n" for i in range(1, 41))
@@ -250,12 +250,12 @@ def prototype_bomb() -> str:
     return text + "P40 { }\n"
 
 
-@bad("deep", "elements within elements, a thousand deep", exit="2", phrase="lie deeper than")
+@bad("deep", "elements within elements, a thousand deep", exit="2", phrase="is recursive or nested")
 def deep() -> str:
     return xml("<Group>" * 1000 + "<Shape><Box/></Shape>" + "</Group>" * 1000)
 
 
-@bad("nothing", "a scene without a shape", exit="2", phrase="no node is a shape")
+@bad("nothing", "a scene without a shape", exit="2", phrase="no shape in 1 entities")
 def nothing() -> str:
     return xml("<Viewpoint/>")
 

@@ -35,7 +35,7 @@ fn real_models_are_audited() {
     let share: f64 = std::env::var("CHORDAL_SHARE").map_or(1e-3, |s| s.parse().unwrap());
     for path in models() {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let model = match chordal_read::read_file(&path) {
+        let model = match chordal_read::read_file(&path, &chordal_read::ReadOptions::default()) {
             Ok(model) => model,
             Err(e) => {
                 println!("{name}: {e}");

@@ -35,16 +35,13 @@ pub enum JobError {
     Threads { threads: usize, reason: String },
 }
 
-/// Where the reader names the file by its stem, the path has named it already.
+/// The reader names the file only where it cannot open it.
 fn read_sentence(path: &Path, source: &ReadError) -> String {
-    let sentence = source.to_string();
     if matches!(source, ReadError::Io { .. }) {
-        return sentence;
+        source.to_string()
+    } else {
+        format!("{}: {source}", path.display())
     }
-    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let rest = sentence.strip_prefix(&stem).filter(|rest| rest.starts_with(' '));
-    let sentence = rest.map_or_else(|| sentence.clone(), |rest| format!("the file{rest}"));
-    format!("{}: {sentence}", path.display())
 }
 
 fn but_holds(loose: &usize) -> String {

@@ -188,7 +188,7 @@ pub fn read_model(input: &Path) -> Result<Model, JobError> {
 /// # Errors
 /// As [`read_model`].
 pub fn read_model_with(input: &Path, options: &ReadOptions) -> Result<Model, JobError> {
-    let model = chordal_read::read_file_with(input, options)
+    let model = chordal_read::read_file(input, options)
         .map_err(|source| JobError::Read { path: input.to_owned(), source })?;
     if model.parts.iter().all(|p| p.faces.is_empty() && p.tessellated.is_empty()) {
         let loose = model.parts.iter().map(|p| p.loose.len()).sum();

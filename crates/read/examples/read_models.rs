@@ -17,7 +17,11 @@ fn main() {
         let mut seconds = f64::INFINITY;
         let mut read = || {
             let start = Instant::now();
-            let model = chordal_read::read_bytes(&bytes, &path);
+            let model = chordal_read::read_bytes(
+                &bytes,
+                None,
+                &chordal_read::ReadOptions::default().with_name(&*path),
+            );
             seconds = seconds.min(start.elapsed().as_secs_f64());
             model
         };

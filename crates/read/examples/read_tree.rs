@@ -4,7 +4,7 @@ use chordal_brep::{Model, NodeId};
 
 fn main() {
     for path in std::env::args().skip(1) {
-        match chordal_read::read_file(&path) {
+        match chordal_read::read_file(&path, &chordal_read::ReadOptions::default()) {
             Ok(model) => {
                 println!("{path}: {} ({})", model.schema, model.unit);
                 for &root in &model.roots {

@@ -1,24 +1,89 @@
 //! Why nothing could be read at all.
 
-/// A file that yields no model; one clear sentence each.
+use crate::Format;
+use chordal_brep::{Issue, ReadIssue, Source};
+use std::path::PathBuf;
+
+/// A file that yields no model.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    #[error("cannot read {path}: {source}")]
-    Io { path: String, source: std::io::Error },
-    #[error("{name} is empty")]
-    Empty { name: String },
+    /// The file cannot be opened or read.
+    #[error("cannot read {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system reports.
+        source: std::io::Error,
+    },
+    /// The file has no content but white space.
+    #[error("the file is empty")]
+    Empty,
+    /// The content is of no format that this build reads.
     #[error(
-        "{name} is of no known format: none of STEP (ISO-10303-21), IGES, BREP (CASCADE Topology), Open Inventor, VRML, X3D, \
-         free-form OBJ, 3DM, and JSON of Chordal or geomdl"
+        "unrecognised file format; supported are STEP (ISO-10303-21), IGES, BREP (CASCADE Topology), Open Inventor, \
+         VRML, X3D, free-form OBJ, 3DM, and JSON of Chordal or geomdl"
     )]
-    UnknownFormat { name: String },
-    #[error("{name} is {format} that cannot be read: {problem}")]
-    Unreadable { name: String, format: &'static str, problem: String },
-    #[error("{name} has no DATA section (the file ends at line {line})")]
-    NoData { name: String, line: u32 },
-    #[error("{name} has no entities in its DATA section (line {line})")]
-    NoEntities { name: String, line: u32 },
-    #[error("{name} holds no shape in its {entities} entities ({problem})")]
-    NothingInIt { name: String, entities: usize, problem: String },
+    UnknownFormat,
+    /// The reader of the format is a feature that this build does not have.
+    #[error("this build has no reader for {format}")]
+    NotCompiled {
+        /// The format.
+        format: Format,
+    },
+    /// A compressed file is damaged, encrypted, or compressed by a method that is not known.
+    #[error("the compressed file cannot be unpacked: {reason}")]
+    Compressed {
+        /// What the decoder reports.
+        reason: String,
+    },
+    /// A compressed file unpacks to more than is read.
+    #[error("the compressed file unpacks to more than {limit} bytes")]
+    TooLarge {
+        /// The most that this file may unpack to.
+        limit: u64,
+    },
+    /// The file is of the format but cannot be read.
+    #[error("{format}: {issue}")]
+    Refused {
+        /// The format.
+        format: Format,
+        /// What is wrong, with the entity and line where they are known.
+        issue: Box<Issue>,
+    },
+    /// The file was read and holds no shape.
+    #[error("{format}: no shape in {entities} entities{}", reason(cause))]
+    NothingInIt {
+        /// The format.
+        format: Format,
+        /// The number of entities, records or nodes that were read.
+        entities: usize,
+        /// The first thing that went wrong, where something did.
+        cause: Option<Box<Issue>>,
+    },
+}
+
+fn reason(cause: &Option<Box<Issue>>) -> String {
+    cause.as_ref().map_or(String::new(), |cause| format!(" ({cause})"))
+}
+
+impl ReadError {
+    /// A file of `format` that cannot be read because of an issue at `source`.
+    pub(crate) fn refused(format: Format, source: Source, issue: ReadIssue) -> Self {
+        ReadError::Refused { format, issue: Box::new(Issue::error(source, issue)) }
+    }
+
+    /// A file of `format` without shape.
+    pub(crate) fn nothing(format: Format, entities: usize, cause: Option<Issue>) -> Self {
+        ReadError::NothingInIt { format, entities, cause: cause.map(Box::new) }
+    }
+
+    /// What is wrong with the file, where it is of a known format.
+    pub fn issue(&self) -> Option<&Issue> {
+        match self {
+            ReadError::Refused { issue, .. } => Some(issue),
+            ReadError::NothingInIt { cause, .. } => cause.as_deref(),
+            _ => None,
+        }
+    }
 }

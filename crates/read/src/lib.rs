@@ -1,69 +1,106 @@
 //! Readers of CAD files: bytes in, [`Model`] out.
 //!
-//! The format is recognised by content. Everything that can be saved arrives: what was repaired or left out becomes
-//! one of the model's warnings, a face that cannot be understood a failed face.
+//! The format is recognised by content ([`Format::of`]); compressed files (gzip, zip) are unpacked. Everything that can
+//! be saved arrives: what was repaired or ignored becomes one of the model's issues, a face that cannot be used a
+//! failed face with its reason.
+//!
+//! ```
+//! use chordal_read::{ReadOptions, read_bytes};
+//! let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+//! # #[cfg(feature = "obj")]
+//! let model = read_bytes(square.as_bytes(), None, &ReadOptions::default().with_name("square"))?;
+//! # #[cfg(feature = "obj")]
+//! assert_eq!(model.parts[0].tessellated[0].triangles.len(), 2);
+//! # Ok::<(), chordal_read::ReadError>(())
+//! ```
+//!
+//! # Features
+//!
+//! Each reader is a feature, all of them on by default: `step`, `iges`, `brep`, `rhino`, `scene` (Open Inventor, VRML
+//! and X3D) and `obj`. JSON is always read.
+
+// A build with some of the readers leaves parts of what they share without a user.
+#![cfg_attr(
+    not(all(
+        feature = "step",
+        feature = "iges",
+        feature = "brep",
+        feature = "rhino",
+        feature = "scene",
+        feature = "obj"
+    )),
+    allow(dead_code, unused_imports)
+)]
 
 mod assemble;
+#[cfg(feature = "brep")]
 mod brep_text;
 mod error;
 mod flat;
 mod flat_caps;
 mod folds;
+mod format;
+#[cfg(feature = "iges")]
 mod iges;
+#[cfg(feature = "scene")]
 mod inventor;
 mod json;
+mod locate;
+mod number;
+#[cfg(feature = "obj")]
 mod obj;
+#[cfg(feature = "rhino")]
 mod rhino;
+#[cfg(feature = "scene")]
 mod scene;
 mod settle_surfaces;
+mod srgb;
+#[cfg(feature = "step")]
 mod step;
 mod trimmed;
+mod unpack;
+#[cfg(feature = "scene")]
 mod x3d;
 
 use chordal_brep::Model;
 use std::path::Path;
 
 pub use error::ReadError;
+pub use format::Format;
 
-/// Reads a file.
+/// Reads a file. Its stem names the model unless the options do.
 ///
 /// # Errors
-/// [`ReadError`] where the file cannot be opened, is of no known format or holds no geometry.
-pub fn read_file(path: impl AsRef<Path>) -> Result<Model, ReadError> {
-    read_file_with(path, &ReadOptions::default())
-}
-
-/// Reads a file by the caller's conventions.
-///
-/// # Errors
-/// As [`read_file`].
-pub fn read_file_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Model, ReadError> {
+/// [`ReadError`] where the file cannot be opened, is of no known format or holds no shape.
+pub fn read_file(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Model, ReadError> {
     let path = path.as_ref();
-    let bytes =
-        std::fs::read(path).map_err(|source| ReadError::Io { path: path.display().to_string(), source })?;
-    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    read_bytes_with(&bytes, &name, options)
-}
-
-/// Reads a file's content; `name` names the model (and parts that have no name of their own).
-///
-/// # Errors
-/// [`ReadError`] where the content is of no known format or holds no geometry.
-pub fn read_bytes(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
-    read_bytes_with(bytes, name, &ReadOptions::default())
-}
-
-/// Reads a file's content by the caller's conventions.
-///
-/// # Errors
-/// As [`read_bytes`].
-pub fn read_bytes_with(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Model, ReadError> {
-    if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(ReadError::Empty { name: name.to_owned() });
+    let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+    if !options.name.is_empty() {
+        return read_bytes(&bytes, None, options);
     }
-    let known = FORMATS.iter().find(|format| (format.looks_like)(bytes));
-    let format = known.ok_or_else(|| ReadError::UnknownFormat { name: name.to_owned() })?;
-    let mut model = (format.read)(bytes, name, options)?;
+    read_bytes(&bytes, None, &options.clone().with_name(stem(path)))
+}
+
+/// The name without its extension, and of a compressed file without the extension of what is compressed.
+fn stem(path: &Path) -> String {
+    let compressed =
+        path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz") || e.eq_ignore_ascii_case("zip"));
+    let stem = path.file_stem().map(Path::new).unwrap_or(path);
+    let stem = if compressed { stem.file_stem().map(Path::new).unwrap_or(stem) } else { stem };
+    stem.to_string_lossy().into_owned()
+}
+
+/// Reads the content of a file, which may be compressed. Without a `format` the content tells it.
+///
+/// # Errors
+/// [`ReadError`] where the content cannot be unpacked, is of no known format or holds no shape.
+pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -> Result<Model, ReadError> {
+    let bytes = unpack::unpacked(bytes)?;
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(ReadError::Empty);
+    }
+    let format = format.or_else(|| Format::of(&bytes)).ok_or(ReadError::UnknownFormat)?;
+    let mut model = format.read(&bytes, options)?;
     settle_surfaces::make_sizes_positive(&mut model);
     settle_surfaces::leave_out_still_spans(&mut model);
     flat_caps::make_planes_of_caps(&mut model);
@@ -72,15 +109,25 @@ pub fn read_bytes_with(bytes: &[u8], name: &str, options: &ReadOptions) -> Resul
 }
 
 /// What a file leaves open.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ReadOptions {
+    /// Which points trimming loops keep, in formats that do not say.
     pub winding: Winding,
+    /// The name of the model, and of parts that have none of their own.
+    pub name: String,
 }
 
 impl ReadOptions {
+    /// Sets which points trimming loops keep, in formats that do not say.
     pub fn with_winding(mut self, winding: Winding) -> Self {
         self.winding = winding;
+        self
+    }
+
+    /// Sets the name of the model, and of parts that have none of their own.
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
         self
     }
 }
@@ -96,20 +143,13 @@ pub enum Winding {
     Even,
 }
 
-/// A format: how its content is told from the others' and how it is read.
-struct Format {
-    looks_like: fn(&[u8]) -> bool,
-    read: fn(&[u8], &str, &ReadOptions) -> Result<Model, ReadError>,
-}
+/// What tests inside of this crate share.
+#[cfg(test)]
+mod testing {
+    use super::*;
 
-/// In the order in which they are tried: the surest signs first.
-const FORMATS: &[Format] = &[
-    Format { looks_like: rhino::looks_like_3dm, read: |bytes, name, _| rhino::read(bytes, name) },
-    Format { looks_like: step::looks_like_step, read: |bytes, name, _| step::read(bytes, name) },
-    Format { looks_like: json::looks_like_json, read: |bytes, name, _| json::read(bytes, name) },
-    Format { looks_like: brep_text::looks_like_brep, read: |bytes, name, _| brep_text::read(bytes, name) },
-    Format { looks_like: iges::looks_like_iges, read: |bytes, name, _| iges::read(bytes, name) },
-    Format { looks_like: inventor::looks_like_inventor, read: inventor::read },
-    Format { looks_like: x3d::looks_like_x3d, read: x3d::read },
-    Format { looks_like: obj::looks_like_obj, read: |bytes, name, _| obj::read(bytes, name) },
-];
+    /// Reads content whose format it tells itself.
+    pub(crate) fn read_bytes(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
+        super::read_bytes(bytes, None, &ReadOptions::default().with_name(name))
+    }
+}

@@ -1,7 +1,10 @@
 //! The corpus of the repository: each file holds what its index says, each broken one ends in a sentence or is saved.
 
+mod common;
+
 use chordal_brep::{BodyKind, FaceGeometry, Loop, LooseKind, Model};
-use chordal_read::{ReadError, read_bytes, read_file};
+use chordal_read::ReadError;
+use common::{read_bytes, read_file};
 use std::path::PathBuf;
 
 fn corpus() -> PathBuf {

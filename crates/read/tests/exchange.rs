@@ -1,7 +1,9 @@
 //! The corpus of exchange formats: each file holds what its index says, each broken one ends in a sentence or is saved.
 
+mod common;
+
 use chordal_brep::{BodyKind, FaceGeometry, Model};
-use chordal_read::{read_bytes, read_file};
+use common::{read_bytes, read_file};
 use proptest::prelude::*;
 use std::path::PathBuf;
 

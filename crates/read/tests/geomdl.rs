@@ -1,7 +1,9 @@
 //! JSON exported by geomdl: real exports, and what is wrong with made ones.
 
+mod common;
+
 use chordal_brep::{FaceGeometry, Loop, LooseKind, Model, ReadIssue};
-use chordal_read::{read_bytes, read_file};
+use common::{read_bytes, read_file};
 use proptest::prelude::*;
 use std::path::PathBuf;
 

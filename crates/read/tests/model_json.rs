@@ -1,8 +1,10 @@
 //! Chordal's own JSON: what is written is what comes back, and broken documents end in a sentence or are saved.
 
+mod common;
+
 use chordal_brep::{FaceGeometry, Loop, Model, ReadIssue};
 use chordal_document::{SCHEMA, from_json, to_json};
-use chordal_read::{read_bytes, read_file};
+use common::{read_bytes, read_file};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 

@@ -2,6 +2,8 @@
 //!
 //! The files lie outside the repository: in the folder that CHORDAL_MODELS names, else in `../shared/models` beside it.
 
+mod common;
+
 use chordal_brep::{FaceGeometry, Loop, Model};
 use chordal_nurbs::DVec3;
 use std::path::PathBuf;
@@ -70,7 +72,7 @@ fn every_face_of(kind: &str) {
     for row in index.lines().map(|line| line.split('\t').collect::<Vec<_>>()).filter(|row| row[0] == kind) {
         let name = row[1];
         let reference: usize = row[6].parse().unwrap_or(0);
-        let model = match chordal_read::read_file(folder.join(kind).join(name)) {
+        let model = match common::read_file(folder.join(kind).join(name)) {
             Ok(model) => model,
             Err(error) => {
                 wrong.push(format!("{name}: {error}"));
@@ -136,7 +138,7 @@ fn edges_end_in_their_vertices() {
         if loose.contains(&name.as_str()) {
             continue;
         }
-        let model = chordal_read::read_file(entry.path()).expect("readable");
+        let model = common::read_file(entry.path()).expect("readable");
         for part in &model.parts {
             for edge in &part.edges {
                 let Some(curve) = &edge.curve else { continue };
@@ -168,7 +170,7 @@ fn edges_lie_on_their_faces() {
         if loose.contains(&name.as_str()) {
             continue;
         }
-        let model = chordal_read::read_file(entry.path()).expect("readable");
+        let model = common::read_file(entry.path()).expect("readable");
         for part in &model.parts {
             for face in &part.faces {
                 let FaceGeometry::Surface(surface) = &face.geometry else { continue };
@@ -230,7 +232,7 @@ fn placed_edges_fill_the_reference_box() {
             row[19].trim_matches(['[', ']']).split(',').filter_map(|n| n.trim().parse().ok()).collect();
         let &[x0, y0, z0, x1, y1, z1] = numbers.as_slice() else { continue };
         let (low, high) = (DVec3::new(x0, y0, z0), DVec3::new(x1, y1, z1));
-        let model = chordal_read::read_file(folder.join("step").join(name)).expect("readable");
+        let model = common::read_file(folder.join("step").join(name)).expect("readable");
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for placement in model.placements() {
             for edge in &model.parts[placement.part.index()].edges {

@@ -1,8 +1,10 @@
 //! Wavefront OBJ: the files of the specification's examples, and what is wrong with made ones.
 
+mod common;
+
 use chordal_brep::{FaceGeometry, LooseKind, Model};
 use chordal_nurbs::{DVec2, DVec3};
-use chordal_read::{read_bytes, read_file};
+use common::{read_bytes, read_file};
 use proptest::prelude::*;
 use std::path::PathBuf;
 
@@ -152,7 +154,7 @@ fn only_obj_is_taken_for_it() {
     for text in ["hello world\n", "v 1 2 3\nsolid\n", "g a\n", "# v 0 0 0\n", "solid a\nfacet normal 0 0 1\n"]
     {
         let said = read_bytes(text.as_bytes(), "part").expect_err("no OBJ").to_string();
-        assert!(said.contains("no known format"), "{text}: {said}");
+        assert!(said.contains("unrecognised file format"), "{text}: {said}");
     }
 }
 

@@ -1,5 +1,7 @@
 //! Real 3DM archives, versions 1 to 7: every face arrives.
 
+mod common;
+
 use chordal_brep::{BodyKind, FaceGeometry, Loop};
 use std::path::PathBuf;
 
@@ -17,7 +19,7 @@ fn every_face_of_real_archives_arrives() {
     for row in rows {
         let (name, faces, solids): (_, usize, usize) =
             (row[1], row[6].parse().expect("faces"), row[8].parse().expect("solids"));
-        let model = chordal_read::read_file(folder.join("3dm").join(name)).expect("readable");
+        let model = common::read_file(folder.join("3dm").join(name)).expect("readable");
         let part = &model.parts[0];
         let failed = part.faces.iter().filter(|f| matches!(f.geometry, FaceGeometry::Failed(_))).count();
         if part.faces.len() != faces || failed > 0 {

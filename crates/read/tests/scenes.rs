@@ -2,6 +2,8 @@
 //!
 //! The files lie outside the repository: in the folder that CHORDAL_MODELS names, else in `../shared/models` beside it.
 
+mod common;
+
 use chordal_brep::{Face, FaceGeometry, Model, Part};
 use chordal_nurbs::{NurbsSurface, Surface};
 use std::path::PathBuf;
@@ -27,13 +29,13 @@ const FACES: &[(&str, usize)] = &[
 
 /// Files without a surface that can be said exactly.
 const REFUSED: &[(&str, &str)] = &[
-    ("x3d/B.x3d", "its trajectory is closed; a section that turns with it has no exact spline form"),
+    ("x3d/B.x3d", "the trajectory is closed; a section that turns with it has no exact spline form"),
     (
         "x3d/NurbsSweptSurface.x3d",
-        "its trajectory is bent; a section that turns with it has no exact spline form",
+        "the trajectory is bent; a section that turns with it has no exact spline form",
     ),
     // Its points are computed by a script.
-    ("x3d/torus.x3d", "0 control points where 7 × 7 are needed"),
+    ("x3d/torus.x3d", "number of control points is 0, at least 49 needed"),
 ];
 
 fn folder() -> Option<PathBuf> {
@@ -48,7 +50,7 @@ fn folder() -> Option<PathBuf> {
 }
 
 fn model(name: &str) -> Option<Model> {
-    Some(chordal_read::read_file(folder()?.join(name)).expect("readable"))
+    Some(common::read_file(folder()?.join(name)).expect("readable"))
 }
 
 fn splines(part: &Part) -> Vec<&NurbsSurface> {
@@ -64,14 +66,14 @@ fn spline(face: &Face) -> Option<&NurbsSurface> {
 fn every_surface_arrives_or_is_refused_for_a_reason() {
     let Some(folder) = folder() else { return };
     for (name, faces) in FACES {
-        let model = chordal_read::read_file(folder.join(name)).expect("readable");
+        let model = common::read_file(folder.join(name)).expect("readable");
         assert_eq!(model.placed_faces(), *faces, "{name}");
         let sound = |part: &Part| part.faces.iter().all(|f| matches!(f.geometry, FaceGeometry::Surface(_)));
         assert!(model.parts.iter().all(sound), "{name}");
         assert!(model.issues.iter().all(|w| !w.is_error()), "{name}: {:?}", model.issues);
     }
     for (name, reason) in REFUSED {
-        let error = chordal_read::read_file(folder.join(name)).expect_err("nothing in it").to_string();
+        let error = common::read_file(folder.join(name)).expect_err("nothing in it").to_string();
         assert!(error.contains(reason), "{name}: {error}");
     }
     // No file is forgotten.

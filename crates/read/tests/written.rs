@@ -1,8 +1,10 @@
 //! Files written by hand in formats other than STEP: each holds what its index says, each broken one ends in a sentence
 //! or is saved, and no mutant of them does harm.
 
+mod common;
+
 use chordal_brep::{BodyKind, FaceGeometry, Loop, Model};
-use chordal_read::{read_bytes, read_file};
+use common::{read_bytes, read_file};
 use std::path::PathBuf;
 
 /// Folder in the corpus and suffix of its files.

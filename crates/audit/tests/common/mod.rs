@@ -28,7 +28,8 @@ pub fn names() -> Vec<String> {
 }
 
 pub fn load(name: &str) -> Model {
-    chordal_read::read_file(corpus().join(format!("{name}.step"))).unwrap_or_else(|e| panic!("{name}: {e}"))
+    chordal_read::read_file(corpus().join(format!("{name}.step")), &chordal_read::ReadOptions::default())
+        .unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
 /// The diagonal of the box of a part's edges, or of its surfaces where they have no edges.

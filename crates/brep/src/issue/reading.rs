@@ -59,6 +59,16 @@ macro_rules! issues {
 
 issues! {
     // The file as a whole.
+    /// The file is of a form of its format that is not read.
+    OtherForm {
+        form: &'static str = "The form.",
+        instead: &'static str = "The form that is read.",
+    } => "other-form", "the {form} form is not supported; write the file as {instead}";
+    /// The file is of a version that is not read.
+    UnknownVersion { version: u32 = "The version." } => "unknown-version", "version {version} is not supported";
+    /// JSON that is neither a model of this program nor an export of geomdl.
+    UnknownJson => "unknown-json",
+        "neither the \"schema\" of a Chordal model nor the \"shape\" of a geomdl export";
     /// Further issues of the file were counted, not kept.
     NotListed { issues: usize = "How many." } => "not-listed",
         "{} not listed", count(*issues, "further issue is", "further issues are");
@@ -130,6 +140,11 @@ issues! {
     /// A statement outside of the element to which it belongs.
     MisplacedStatement { keyword: String = "The keyword." } => "misplaced-statement",
         "{keyword} statement outside of any curve or surface ignored";
+    /// Objects of kinds that are not read.
+    ObjectsIgnored {
+        objects: usize = "How many.",
+        what: &'static str = "What they are, in the plural.",
+    } => "objects-ignored", "{} ignored: {what} are not supported", count(*objects, "object", "objects");
     /// A reference to another file, which is not read.
     OtherFile => "other-file", "refers to another file, which is not read";
     /// Commands and scripts of a file are never run.
@@ -139,6 +154,34 @@ issues! {
     TextBroken { reason: String = "What the decoder reports." } => "text-broken", "{reason}";
 
     // Entities and their attributes.
+    /// An issue in a node of a scene.
+    InNode {
+        node: String = "The kind of the node.",
+        cause: Box<ReadIssue> = "The issue.",
+    } => "in-node", "{node}: {cause}";
+    /// An issue of a trim loop of a scene.
+    Trim {
+        node: String = "The kind of the trim's node.",
+        line: u32 = "Its line.",
+        cause: Box<ReadIssue> = "The issue.",
+    } => "trim", "trim {node} (line {line}): {cause}";
+    /// An issue at a place of a binary file; everything behind it is lost.
+    AtByte {
+        byte: u64 = "The position in the file, from 0.",
+        cause: Box<ReadIssue> = "The issue.",
+    } => "at-byte", "byte {byte}: {cause}; the rest of the file is ignored";
+    /// A node, prototype or block is used inside itself.
+    UsedInItself { node: String = "Its kind or name." } => "used-in-itself",
+        "{node} is used inside itself; ignored there";
+    /// A node of a kind that has no effect on shapes or is not read.
+    NotRead => "not-read", "not supported; ignored";
+    /// The data of an object are shorter than it says.
+    EndsEarly { bytes: usize = "The bytes that are missing." } => "ends-early", "the data end {bytes} bytes early";
+    /// A list is longer than the file.
+    ListTooLong { items: u64 = "The number of items that the file states." } => "list-too-long",
+        "a list of {items} items does not fit into the file";
+    /// Values that must increase do not.
+    NotIncreasing { what: &'static str = "The values." } => "not-increasing", "the {what} do not increase";
     /// An entity is of another kind than its use needs.
     UnknownKind {
         found: Word = "What it is.",
@@ -313,6 +356,9 @@ issues! {
     /// A surface without parameters in one direction.
     OneSegment { direction: &'static str = "The direction." } => "one-segment",
         "no parameters along {direction}: read as one segment";
+    /// A section that turns with its trajectory has no exact spline form.
+    SweepNotExact { trajectory: &'static str = "What the trajectory is: `closed`, `bent`." } => "sweep-not-exact",
+        "the trajectory is {trajectory}; a section that turns with it has no exact spline form";
     /// A weight is zero.
     ZeroWeight => "zero-weight", "weight 0 replaced by a weight too small to matter";
     /// A bounded curve is needed.

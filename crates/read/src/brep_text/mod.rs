@@ -19,8 +19,8 @@ mod surfaces;
 mod tokens;
 mod triangulations;
 
-use crate::ReadError;
-use chordal_brep::Model;
+use crate::{Format, ReadError};
+use chordal_brep::{Model, ReadIssue, Source};
 use document::Document;
 use memchr::memmem;
 
@@ -42,30 +42,25 @@ fn title(bytes: &[u8]) -> Option<usize> {
 
 /// Reads a BREP file.
 pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
-    let refused = |problem: &str| ReadError::Unreadable {
-        name: name.to_owned(),
-        format: "BREP",
-        problem: problem.to_owned(),
-    };
-    let at = title(bytes).ok_or_else(|| ReadError::UnknownFormat { name: name.to_owned() })?;
+    let refused = |issue: ReadIssue| ReadError::refused(Format::Brep, Source::default(), issue);
+    let at = title(bytes).ok_or(ReadError::UnknownFormat)?;
     let before = &bytes[..at - TITLE.len()];
     if before.trim_ascii_end().ends_with(b"Open") {
-        return Err(refused("it is the binary form; write it as text (BRepTools::Write) instead"));
+        return Err(refused(ReadIssue::OtherForm { form: "binary", instead: "text (BRepTools::Write)" }));
     }
     let version = match bytes.get(at) {
         Some(digit @ b'1'..=b'3') => u32::from(digit - b'0'),
-        _ => return Err(refused("its version is not one of those known, 1 to 3")),
+        other => {
+            return Err(refused(ReadIssue::UnknownVersion {
+                version: other.map_or(0, |byte| u32::from(*byte)),
+            }));
+        }
     };
     let mut document = Document::read(&bytes[at..], version, line_of(before));
     let found = parts::build(&mut document, name);
     if found.parts.is_empty() {
-        let problem = document.notes.first();
-        let problem = problem.map_or_else(|| "it has no faces".to_owned(), |warning| warning.to_string());
-        return Err(ReadError::NothingInIt {
-            name: name.to_owned(),
-            entities: document.shapes.len(),
-            problem,
-        });
+        let cause = document.notes.first();
+        return Err(ReadError::nothing(Format::Brep, document.shapes.len(), cause));
     }
     Ok(Model {
         name: name.to_owned(),

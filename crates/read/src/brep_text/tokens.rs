@@ -1,6 +1,6 @@
 //! The file as words and numbers between blanks.
 
-use crate::step::number;
+use crate::number;
 use chordal_brep::ReadIssue;
 
 /// The text cannot be followed from here on: what was expected, and at which line.

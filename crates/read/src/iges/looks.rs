@@ -110,6 +110,6 @@ fn color(doc: &Doc<'_>, ix: Ix) -> Option<Color> {
 }
 
 fn linear(srgb: [f64; 3]) -> Color {
-    let [r, g, b] = srgb.map(crate::step::styles::linear);
+    let [r, g, b] = srgb.map(crate::srgb::linear);
     Color([r, g, b, 1.0])
 }

@@ -26,8 +26,8 @@ mod surfaces;
 mod topology;
 mod tree;
 
-use crate::ReadError;
-use chordal_brep::Model;
+use crate::{Format, ReadError};
+use chordal_brep::{Model, ReadIssue, Source};
 use document::Doc;
 use lines::Sections;
 
@@ -64,16 +64,13 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let special = if is_binary(bytes) { Some(b'B') } else { sections.special };
     if let Some(flag) = special {
         let form = if flag == b'B' { "binary" } else { "compressed ASCII" };
-        let problem = format!("it is the {form} form; write it in the fixed ASCII form instead");
-        return Err(ReadError::Unreadable { name: name.to_owned(), format: "IGES", problem });
+        let issue = ReadIssue::OtherForm { form, instead: "the fixed ASCII form" };
+        return Err(ReadError::refused(Format::Iges, Source::default(), issue));
     }
     let doc = Doc::new(sections, bytes.len());
     let found = tree::build(&doc, name);
     if found.parts.is_empty() {
-        let problem = doc.notes.first();
-        let problem =
-            problem.map_or_else(|| "none of them is a surface".to_owned(), |issue| issue.to_string());
-        return Err(ReadError::NothingInIt { name: name.to_owned(), entities: doc.entries.len(), problem });
+        return Err(ReadError::nothing(Format::Iges, doc.entries.len(), doc.notes.first()));
     }
     Ok(Model {
         name: name.to_owned(),

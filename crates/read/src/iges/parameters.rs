@@ -1,6 +1,6 @@
 //! Free-form parameters: numbers and strings between delimiters.
 
-use crate::step::number;
+use crate::number;
 
 /// One parameter.
 #[derive(Clone, Debug, PartialEq)]

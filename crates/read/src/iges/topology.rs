@@ -7,7 +7,7 @@ use super::document::{Args, Ix, Res};
 use super::matrix;
 use super::simpler::elementary;
 use super::surfaces::{Patch, surface};
-use crate::step::locate::locate;
+use crate::locate::locate;
 use crate::trimmed::Look;
 use chordal_brep::{
     Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Issue, Loop, Pcurve, ReadIssue, Real,

@@ -6,7 +6,7 @@
 
 use super::fields::{self, FieldType, Layout};
 use crate::scene::graph::{Graph, Node, NodeIx, Value};
-use chordal_brep::Source;
+use chordal_brep::{ReadIssue, Source};
 
 /// Nodes within nodes deeper than this are not read.
 const MAX_DEPTH: u32 = 400;
@@ -16,7 +16,7 @@ const NOT_BUILT_IN: u32 = 1 << 15;
 const CONNECTED: u32 = 1 << 1;
 
 /// A file that ends or stops making sense; the sentence.
-type Res<T> = Result<T, String>;
+type Res<T> = Result<T, ReadIssue>;
 
 /// The graph of a binary file up to where it can be understood.
 pub(super) fn parse(bytes: &[u8], header: &str) -> Graph {
@@ -30,10 +30,7 @@ pub(super) fn parse(bytes: &[u8], header: &str) -> Graph {
             Err(reason) => {
                 let source = reader.source();
                 let at = reader.at;
-                reader
-                    .graph
-                    .notes
-                    .lose(source, format!("{reason} (byte {at}); what comes after is left out"));
+                reader.graph.notes.lose(source, ReadIssue::AtByte { byte: at as u64, cause: reason.boxed() });
                 break;
             }
         }
@@ -58,7 +55,7 @@ impl<'a> Reader<'a> {
 
     fn take(&mut self, count: usize) -> Res<&'a [u8]> {
         let end = self.at.checked_add(count).filter(|&end| end <= self.bytes.len());
-        let end = end.ok_or("the file ends within a node")?;
+        let end = end.ok_or(ReadIssue::EntityTruncated)?;
         let taken = &self.bytes[self.at..end];
         self.at = end;
         Ok(taken)
@@ -77,7 +74,7 @@ impl<'a> Reader<'a> {
     }
 
     fn floats(&mut self, count: usize) -> Res<Vec<f64>> {
-        let taken = self.take(count.checked_mul(4).ok_or("a list is longer than the file")?)?;
+        let taken = self.take(count.checked_mul(4).ok_or(ReadIssue::ListTooLong { items: count as u64 })?)?;
         let number = |b: &[u8]| f64::from(f32::from_be_bytes([b[0], b[1], b[2], b[3]]));
         Ok(taken.chunks_exact(4).map(number).collect())
     }
@@ -93,9 +90,7 @@ impl<'a> Reader<'a> {
                 let known = self.graph.names.get(&name).copied();
                 if known.is_none() {
                     let source = self.source();
-                    self.graph
-                        .notes
-                        .lose(source, format!("USE {name}: no node of this name comes before; left out"));
+                    self.graph.notes.lose(source, ReadIssue::NameNotFound { what: "node", name });
                 }
                 return Ok(known);
             }
@@ -106,10 +101,10 @@ impl<'a> Reader<'a> {
             _ => {}
         }
         if !kind.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') || kind.is_empty() {
-            return Err("a node has no sensible name".to_owned());
+            return Err(ReadIssue::Missing { what: "readable name of a node" });
         }
         if self.depth >= MAX_DEPTH {
-            return Err(format!("{kind} lies deeper than {MAX_DEPTH} nodes"));
+            return Err(ReadIssue::Recursive { keyword: kind.into(), levels: MAX_DEPTH });
         }
         self.depth += 1;
         let number = self.graph.nodes.len() as u64 + 1;
@@ -157,8 +152,8 @@ impl<'a> Reader<'a> {
                 Some((_, layout)) => fields::named(layout),
                 None => fields::of(kind, &name),
             };
-            let layout =
-                layout.ok_or_else(|| format!("the layout of field {name} of {kind} is not known"))?;
+            let layout = layout
+                .ok_or_else(|| ReadIssue::Unsupported { what: format!("field {name} of {kind}").into() })?;
             let value = self.value(layout)?;
             self.graph.nodes[ix as usize].fields.push((name, value));
             if self.word()? & CONNECTED != 0 {
@@ -171,16 +166,18 @@ impl<'a> Reader<'a> {
 
     fn value(&mut self, (layout, many): FieldType) -> Res<Value> {
         let count = if many { self.word()? as usize } else { 1 };
-        let too_long = "a list is longer than the file";
+        let too_long = || ReadIssue::ListTooLong { items: count as u64 };
         Ok(match layout {
-            Layout::Floats(each) => Value::Numbers(self.floats(count.checked_mul(each).ok_or(too_long)?)?),
+            Layout::Floats(each) => {
+                Value::Numbers(self.floats(count.checked_mul(each).ok_or_else(too_long)?)?)
+            }
             Layout::Whole => {
-                let taken = self.take(count.checked_mul(4).ok_or(too_long)?)?;
+                let taken = self.take(count.checked_mul(4).ok_or_else(too_long)?)?;
                 let number = |b: &[u8]| f64::from(i32::from_be_bytes([b[0], b[1], b[2], b[3]]));
                 Value::Numbers(taken.chunks_exact(4).map(number).collect())
             }
             Layout::Double => {
-                let taken = self.take(count.checked_mul(8).ok_or(too_long)?)?;
+                let taken = self.take(count.checked_mul(8).ok_or_else(too_long)?)?;
                 let number = |b: &[u8]| f64::from_be_bytes(std::array::from_fn(|i| b[i]));
                 Value::Numbers(taken.chunks_exact(8).map(number).collect())
             }
@@ -205,8 +202,9 @@ impl<'a> Reader<'a> {
             Layout::Image => {
                 let (width, height, each) =
                     (self.word()? as usize, self.word()? as usize, self.word()? as usize);
-                let size = width.checked_mul(height).and_then(|n| n.checked_mul(each)).ok_or(too_long)?;
-                self.take(size.checked_next_multiple_of(4).ok_or(too_long)?)?;
+                let size =
+                    width.checked_mul(height).and_then(|n| n.checked_mul(each)).ok_or_else(too_long)?;
+                self.take(size.checked_next_multiple_of(4).ok_or_else(too_long)?)?;
                 Value::Numbers(Vec::new())
             }
             Layout::Trigger => Value::Numbers(Vec::new()),

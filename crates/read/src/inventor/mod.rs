@@ -14,7 +14,7 @@ mod walk;
 
 use crate::scene::stage::Stage;
 use crate::scene::text;
-use crate::{ReadError, ReadOptions};
+use crate::{Format, ReadError, ReadOptions};
 use chordal_brep::Model;
 
 /// Inventor has no unit of its own; its `Units` nodes take lengths for metres where no other one is above.
@@ -34,7 +34,7 @@ pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Mo
     let mut stage = Stage::new(bytes.len());
     walk::walk(&graph, &mut stage);
     let schema = line.trim_start_matches('#').trim().to_owned();
-    stage.finish(&mut graph, name, schema, "m", MILLIMETRES)
+    stage.finish(Format::Inventor, &mut graph, name, schema, "m", MILLIMETRES)
 }
 
 /// The first line, which is ASCII.

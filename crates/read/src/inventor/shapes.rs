@@ -5,6 +5,7 @@ use super::walk::Walk;
 use crate::scene::graph::{Node, NodeIx};
 use crate::scene::polygons;
 use crate::scene::primitives::{self, Faces};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::DVec3;
 use std::borrow::Cow;
 
@@ -54,7 +55,10 @@ fn solid(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
         _ => [named("bottomRadius", 1.0), named("height", 2.0), 1.0],
     };
     if !sizes.iter().all(|&s| s > 0.0) {
-        return walk.stage.notes.lose(node.source(), format!("{}: it has no size; left out", node.kind));
+        return walk.stage.notes.lose(
+            node.source(),
+            ReadIssue::InNode { node: node.kind.clone(), cause: ReadIssue::Empty.boxed() },
+        );
     }
     let [a, b, _] = sizes;
     walk.stage.solid(&state.transform, &look, |part, look| match node.kind.as_str() {
@@ -95,7 +99,8 @@ fn polygons_of(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
         _ => mesh(node, points.len()),
     };
     if lost > 0 {
-        let message = format!("{}: {lost} polygons without three corners of the list; left out", node.kind);
+        let cause = ReadIssue::PolygonsLost { polygons: lost }.boxed();
+        let message = ReadIssue::InNode { node: node.kind.clone(), cause };
         walk.stage.notes.lose(node.source(), message);
     }
     let mut look = walk.look(node, state, name);

@@ -5,6 +5,7 @@ use super::walk::Walk;
 use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::nurbs::{self, Net};
 use crate::trimmed::{Piece, Role, TrimLoop};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4};
 
 /// Reads a node if it is a surface; true then.
@@ -24,12 +25,14 @@ pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, state: &State, name: &str) -
     let made = net(graph, node, state, counts, &mut notes);
     let trims = trims(graph, state, &mut notes);
     for note in notes {
-        walk.stage.notes.warn(node.source(), format!("{}: {note}", node.kind));
+        walk.stage
+            .notes
+            .warn(node.source(), ReadIssue::InNode { node: node.kind.clone(), cause: note.boxed() });
     }
     match (made, trims) {
         (Ok(surface), Ok(trims)) => walk.stage.surface(&surface, &trims, &state.transform, &look),
         (Err(reason), _) | (_, Err(reason)) => {
-            walk.stage.failed(format!("{}: {reason}", node.kind).into(), &look);
+            walk.stage.failed(ReadIssue::InNode { node: node.kind.clone(), cause: reason.boxed() }, &look);
         }
     }
     true
@@ -45,15 +48,15 @@ fn net(
     node: &Node,
     state: &State,
     counts: [usize; 2],
-    notes: &mut Vec<String>,
-) -> Result<chordal_nurbs::NurbsSurface, String> {
-    let coordinates = state.shared.coordinates.ok_or("no coordinates come before it")?;
+    notes: &mut Vec<ReadIssue>,
+) -> Result<chordal_nurbs::NurbsSurface, ReadIssue> {
+    let coordinates = state.shared.coordinates.ok_or(ReadIssue::Missing { what: "coordinates before it" })?;
     let points = homogeneous(graph.node(coordinates));
     let needed = counts[0].saturating_mul(counts[1]);
     let points = if node.kind == "IndexedNurbsSurface" {
         let index = node.numbers("coordIndex");
         let picked: Option<Vec<DVec4>> = index.iter().take(needed).map(|&i| at(&points, i)).collect();
-        picked.ok_or("an index lies outside the list of coordinates")?
+        picked.ok_or(ReadIssue::Missing { what: "coordinate for an index" })?
     } else {
         points.into_iter().take(needed).collect()
     };
@@ -94,14 +97,15 @@ pub(super) fn profile(node: &Node, ix: NodeIx, state: &mut State) {
     }
 }
 
-fn trims(graph: &Graph, state: &State, notes: &mut Vec<String>) -> Result<Vec<TrimLoop>, String> {
+fn trims(graph: &Graph, state: &State, notes: &mut Vec<ReadIssue>) -> Result<Vec<TrimLoop>, ReadIssue> {
     let mut loops = Vec::with_capacity(state.shared.profiles.len());
     for chain in &state.shared.profiles {
         let mut pieces = Vec::with_capacity(chain.len());
         for &(ix, coordinates) in chain {
             let node = graph.node(ix);
-            let piece = piece(graph, node, coordinates, notes)
-                .map_err(|reason| format!("its trim, the {} of {}: {reason}", node.kind, node.source()))?;
+            let piece = piece(graph, node, coordinates, notes).map_err(|reason: ReadIssue| {
+                ReadIssue::Trim { node: node.kind.clone(), line: node.source().line, cause: reason.boxed() }
+            })?;
             pieces.push(piece);
         }
         let source = chain.first().map(|(ix, _)| graph.node(*ix).source()).unwrap_or_default();
@@ -114,9 +118,10 @@ fn piece(
     graph: &Graph,
     node: &Node,
     coordinates: Option<NodeIx>,
-    notes: &mut Vec<String>,
-) -> Result<Piece, String> {
-    let coordinates = graph.node(coordinates.ok_or("no profile coordinates come before it")?);
+    notes: &mut Vec<ReadIssue>,
+) -> Result<Piece, ReadIssue> {
+    let coordinates =
+        graph.node(coordinates.ok_or(ReadIssue::Missing { what: "profile coordinates before it" })?);
     let numbers = coordinates.numbers("point");
     let points: Vec<DVec3> = if coordinates.kind == "ProfileCoordinate3" {
         numbers.chunks_exact(3).map(DVec3::from_slice).collect()
@@ -126,11 +131,11 @@ fn piece(
     let index = node.numbers("index");
     let picked: Option<Vec<DVec3>> =
         index.iter().map(|&i| if i >= 0.0 { points.get(i as usize).copied() } else { None }).collect();
-    let picked = picked.ok_or("an index lies outside the list of coordinates")?;
+    let picked = picked.ok_or(ReadIssue::Missing { what: "coordinate for an index" })?;
     if node.kind == "LinearProfile" {
         let line: Vec<DVec2> = picked.iter().map(|p| DVec2::new(p.x, p.y) / p.z).collect();
         if line.len() < 2 || !line.iter().all(|p| p.is_finite()) {
-            return Err("it has fewer than two points".to_owned());
+            return Err(ReadIssue::TooFew { what: "points", found: 0, least: 2 });
         }
         return Ok(Piece::whole(Curve2::Polyline(line)));
     }

@@ -6,7 +6,7 @@ use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::matrix;
 use crate::scene::stage::{self, Placed, Stage};
 use crate::trimmed::Look;
-use chordal_brep::LooseKind;
+use chordal_brep::{LooseKind, ReadIssue};
 use chordal_nurbs::{DAffine3, DVec3};
 use glam::DQuat;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -53,10 +53,7 @@ impl Walk<'_> {
             return;
         }
         if std::mem::replace(&mut self.active[ix as usize], true) {
-            return self
-                .stage
-                .notes
-                .lose(node.source(), format!("{} is used inside itself; left out there", node.kind));
+            return self.stage.notes.lose(node.source(), ReadIssue::UsedInItself { node: node.kind.clone() });
         }
         self.depth += 1;
         let name = if node.name.is_empty() { name } else { readable(&node.name) };
@@ -120,7 +117,7 @@ impl Walk<'_> {
             "Switch" => self.switch(node, state, name),
             "LOD" | "LevelOfDetail" => {
                 if node.children.len() > 1 {
-                    self.note(node, "only the first level of detail is read");
+                    self.note(node, ReadIssue::FirstLevelOnly);
                 }
                 let mut inner = state.clone();
                 node.children.first().inspect(|&&child| self.node(child, &mut inner, name));
@@ -144,7 +141,9 @@ impl Walk<'_> {
             "PointSet" | "IndexedPointSet" | "MarkerSet" | "IndexedMarkerSet" => {
                 self.stage.loose(LooseKind::Point, name, node.source());
             }
-            "Text2" | "Text3" | "AsciiText" => self.note(node, "text has no surfaces here"),
+            "Text2" | "Text3" | "AsciiText" => {
+                self.note(node, ReadIssue::Unsupported { what: "text".into() })
+            }
             _ => self.children(node, state, name),
         }
     }
@@ -165,7 +164,7 @@ impl Walk<'_> {
             }
             -3.0 => self.children(node, state, name),
             _ if node.children.is_empty() => {}
-            _ => self.note(node, "no child is switched on; its children are left out"),
+            _ => self.note(node, ReadIssue::NoChoice),
         }
     }
 
@@ -177,10 +176,10 @@ impl Walk<'_> {
             match grid(node) {
                 Some(places) => places,
                 None => {
-                    return self
-                        .stage
-                        .notes
-                        .lose(node.source(), "an array of more than 100000 copies; left out");
+                    return self.stage.notes.lose(
+                        node.source(),
+                        ReadIssue::TooMany { what: "copies in an array", limit: 100_000 },
+                    );
                 }
             }
         };
@@ -191,9 +190,11 @@ impl Walk<'_> {
     }
 
     /// Says something once for each kind of node.
-    pub(super) fn note(&mut self, node: &Node, what: &str) {
+    pub(super) fn note(&mut self, node: &Node, what: ReadIssue) {
         if self.noted.insert(node.kind.clone()) {
-            self.stage.notes.warn(node.source(), format!("{}: {what}", node.kind));
+            self.stage
+                .notes
+                .warn(node.source(), ReadIssue::InNode { node: node.kind.clone(), cause: what.boxed() });
         }
     }
 

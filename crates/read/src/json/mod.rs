@@ -3,8 +3,9 @@
 mod geomdl;
 mod trims;
 
-use crate::ReadError;
-use chordal_brep::Model;
+use crate::{Format, ReadError};
+use chordal_brep::{Model, ReadIssue, Source};
+use chordal_document::DocumentError;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
@@ -25,15 +26,19 @@ pub(crate) fn looks_like_json(bytes: &[u8]) -> bool {
 /// Reads a JSON file.
 pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let text = without_mark(bytes);
-    let bad = |problem: String| ReadError::Unreadable { name: name.to_owned(), format: "JSON", problem };
-    let head: Head = serde_json::from_slice(text).map_err(|e| bad(e.to_string()))?;
+    let refused = |line: usize, issue: ReadIssue| {
+        let source = Source { entity: 0, line: u32::try_from(line).unwrap_or(0) };
+        ReadError::refused(Format::Json, source, issue)
+    };
+    let broken = |e: serde_json::Error| refused(e.line(), ReadIssue::TextBroken { reason: e.to_string() });
+    let head: Head = serde_json::from_slice(text).map_err(broken)?;
     match head {
-        Head { schema: Some(_), .. } => chordal_document::from_json(text).map_err(|e| bad(e.to_string())),
-        Head { shape: Some(_), .. } => geomdl::read(text, name).map_err(|e| bad(e.to_string())),
-        _ => {
-            Err(bad("it has neither the \"schema\" of a Chordal model nor the \"shape\" of a geomdl export"
-                .into()))
-        }
+        Head { schema: Some(_), .. } => chordal_document::from_json(text).map_err(|error| match error {
+            DocumentError::Syntax(error) => broken(error),
+            error => refused(0, ReadIssue::TextBroken { reason: error.to_string() }),
+        }),
+        Head { shape: Some(_), .. } => geomdl::read(text, name).map_err(broken),
+        _ => Err(refused(0, ReadIssue::UnknownJson)),
     }
 }
 

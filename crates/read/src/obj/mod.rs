@@ -12,8 +12,8 @@ mod reader;
 #[cfg(test)]
 mod tests;
 
-use crate::ReadError;
 use crate::flat::{self, LengthUnit};
+use crate::{Format, ReadError};
 use chordal_brep::Model;
 
 /// So many statements at the head of a file must all be known ones.
@@ -90,9 +90,7 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let read = reader::read(text);
     let part = read.part;
     if part.faces.is_empty() && part.tessellated.is_empty() && part.loose.is_empty() {
-        let first = read.issues.first().map(|issue| format!(" ({issue})")).unwrap_or_default();
-        let problem = format!("it holds no surface, no polygon and no curve{first}");
-        return Err(ReadError::Unreadable { name: name.to_owned(), format: "OBJ", problem });
+        return Err(ReadError::nothing(Format::Obj, read.statements, read.issues.first().cloned()));
     }
     Ok(flat::model(name, "Wavefront OBJ".to_owned(), LengthUnit::unstated(), part, read.issues))
 }

@@ -13,6 +13,8 @@ use std::sync::Arc;
 
 /// A file's part and what was noted on the way.
 pub(super) struct Read {
+    /// How many statements there are.
+    pub statements: usize,
     pub part: Part,
     pub issues: Vec<Issue>,
 }
@@ -46,10 +48,12 @@ struct Reader {
 
 pub(super) fn read(bytes: &[u8]) -> Read {
     let mut reader = Reader::default();
+    let mut statements = 0;
     for statement in Statements::new(bytes) {
+        statements += 1;
         reader.statement(&statement);
     }
-    reader.finish()
+    Read { statements, ..reader.finish() }
 }
 
 impl Reader {
@@ -334,7 +338,7 @@ impl Reader {
                 _ => self.notes.warn(source, ReadIssue::StatementsIgnored { keyword, statements: count }),
             }
         }
-        Read { part: self.part, issues: self.notes.take() }
+        Read { part: self.part, issues: self.notes.take(), statements: 0 }
     }
 }
 

@@ -8,7 +8,7 @@ use super::{MAGIC, brep, build, curves, extrusion, legacy, mesh};
 use crate::assemble::{Notes, PartBuilder};
 use crate::flat::LengthUnit;
 use crate::trimmed::{Look, Piece, Role, TrimLoop, add_body, add_faces, add_failed};
-use chordal_brep::{BodyKind, Issue, LooseItem, LooseKind, Part, Source};
+use chordal_brep::{BodyKind, Issue, LooseItem, LooseKind, Part, ReadIssue, Source};
 use chordal_nurbs::DVec2;
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ const END_OF_TABLE: u32 = 0xffff_ffff;
 pub(super) struct Read {
     pub part: Part,
     pub unit: LengthUnit,
+    /// How many objects there are.
+    pub objects: usize,
     pub issues: Vec<Issue>,
 }
 
@@ -38,7 +40,12 @@ struct Reader<'a> {
     unit: LengthUnit,
     layers: Vec<Layer>,
     opennurbs: u32,
+    objects: usize,
+    /// Placements of blocks.
     blocks: usize,
+    subdivision_surfaces: usize,
+    /// Texts, dimensions, lights, hatches.
+    annotations: usize,
 }
 
 pub(super) fn read(whole: &[u8], version: u32) -> Read {
@@ -49,7 +56,10 @@ pub(super) fn read(whole: &[u8], version: u32) -> Read {
         unit: LengthUnit::unstated(),
         layers: Vec::new(),
         opennurbs: 0,
+        objects: 0,
         blocks: 0,
+        subdivision_surfaces: 0,
+        annotations: 0,
     };
     let file = Bytes::new(&whole[MAGIC.len() + 8..], version);
     if version == 1 {
@@ -57,15 +67,28 @@ pub(super) fn read(whole: &[u8], version: u32) -> Read {
     } else {
         reader.tables(file);
     }
-    if reader.blocks > 0 {
-        let message = format!("{} placements of blocks are left out: blocks are not read", reader.blocks);
-        reader.notes.lose(Source::default(), message);
-    }
+    reader.note_ignored();
     let issues = reader.notes.take();
-    Read { part: reader.builder.finish(), unit: reader.unit, issues }
+    Read { part: reader.builder.finish(), unit: reader.unit, objects: reader.objects, issues }
 }
 
 impl<'a> Reader<'a> {
+    /// Names what is not read, one line for each kind.
+    fn note_ignored(&self) {
+        let lost = [
+            (self.blocks, "placements of blocks"),
+            (self.subdivision_surfaces, "subdivision surfaces (SubD)"),
+        ];
+        for (objects, what) in lost.into_iter().filter(|(objects, _)| *objects > 0) {
+            self.notes.lose(Source::default(), ReadIssue::ObjectsIgnored { objects, what });
+        }
+        if self.annotations > 0 {
+            let what = "annotations, hatches, lights and other objects without exact shape";
+            let ignored = ReadIssue::ObjectsIgnored { objects: self.annotations, what };
+            self.notes.warn(Source::default(), ignored);
+        }
+    }
+
     fn tables(&mut self, mut file: Bytes<'a>) {
         while !file.is_empty() {
             let source = self.source(&file);
@@ -76,7 +99,7 @@ impl<'a> Reader<'a> {
                 Err(why) => {
                     // Its last table may be cut off: the objects before the cut can be saved.
                     let cut = cut_table(before);
-                    self.notes.lose(source, format!("the archive is damaged: {why}"));
+                    self.notes.lose(source, ReadIssue::Damaged { what: "the archive", cause: why.boxed() });
                     if let Some(table) = cut {
                         self.table(table);
                     }
@@ -116,7 +139,10 @@ impl<'a> Reader<'a> {
                 Ok(chunk) if chunk.code == END_OF_TABLE => return,
                 Ok(_) => {}
                 Err(why) => {
-                    self.notes.lose(source, format!("the table of objects is damaged: {why}"));
+                    self.notes.lose(
+                        source,
+                        ReadIssue::Damaged { what: "the table of objects", cause: why.boxed() },
+                    );
                     return;
                 }
             }
@@ -124,8 +150,9 @@ impl<'a> Reader<'a> {
     }
 
     fn object(&mut self, mut record: Bytes<'a>, source: Source) {
+        self.objects += 1;
         let mut kind = None;
-        let mut shape: Res<(Class, Bytes)> = Err("it has no geometry".into());
+        let mut shape: Res<(Class, Bytes)> = Err(ReadIssue::Missing { what: "geometry" });
         let mut found = Attributes::default();
         while !record.is_empty() {
             let mut ahead = record;
@@ -146,7 +173,9 @@ impl<'a> Reader<'a> {
         let look = self.look(found, source);
         match shape {
             Ok((class, data)) => self.shape(class, data, &look),
-            Err(why) => self.notes.lose(source, format!("an object cannot be read: {why}")),
+            Err(why) => {
+                self.notes.lose(source, ReadIssue::Ignored { what: "object".into(), cause: why.boxed() })
+            }
         }
     }
 
@@ -154,7 +183,8 @@ impl<'a> Reader<'a> {
         let layer = self.layers.iter().find(|layer| layer.index == found.layer);
         Look {
             name: found.name,
-            color: found.color.or(layer.and_then(|layer| layer.color)),
+            // A layer's colour is that of its wires, black unless changed: it says nothing of how surfaces look.
+            color: found.color,
             layer: layer.map(|layer| layer.name.clone()).filter(|name| !name.is_empty()),
             flipped: false,
             source,
@@ -164,13 +194,14 @@ impl<'a> Reader<'a> {
     fn shape(&mut self, class: Class, data: Bytes, look: &Look) {
         match class {
             Class::Brep => match brep::read(data, self.opennurbs) {
-                Ok(raw) => build::add(&mut self.builder, &raw, look, &self.notes),
+                Ok(raw) => build::add(&mut self.builder, &raw, look, &self.notes, self.unit.millimetres),
                 Err(why) => _ = add_failed(&mut self.builder.part, why, look),
             },
             class if class.is_surface() => self.bare_surface(surface(class, data), look),
             class if class.is_curve() => {
                 if let Err(why) = curves::curve(class, data) {
-                    self.notes.warn(look.source, format!("a curve makes no sense: {why}"));
+                    self.notes
+                        .warn(look.source, ReadIssue::Ignored { what: "curve".into(), cause: why.boxed() });
                 }
                 self.loose(LooseKind::Wire, look);
             }
@@ -178,16 +209,17 @@ impl<'a> Reader<'a> {
             Class::InstanceRef => self.blocks += 1,
             Class::Mesh => match mesh::mesh(data, look) {
                 Ok(item) => self.builder.part.tessellated.push(item),
-                Err(why) => self.notes.lose(look.source, format!("a mesh is left out: {why}")),
+                Err(why) => self
+                    .notes
+                    .lose(look.source, ReadIssue::Ignored { what: "mesh".into(), cause: why.boxed() }),
             },
             Class::Extrusion => {
                 if let Err(why) = extrusion::add(&mut self.builder, data, look) {
                     add_failed(&mut self.builder.part, why, look);
                 }
             }
-            Class::SubD => self.notes.lose(look.source, "a subdivision surface is not read"),
-            // Texts, dimensions, lights, hatches.
-            _ => {}
+            Class::SubD => self.subdivision_surfaces += 1,
+            _ => self.annotations += 1,
         }
     }
 

@@ -3,7 +3,7 @@
 use super::bytes::{ANONYMOUS, Bytes, Res};
 use super::curves::{RhinoCurve, bare_polycurve, curve_object};
 use super::surfaces::{RhinoSurface, nurbs_surface, surface_object};
-use chordal_brep::Color;
+use chordal_brep::{Color, ReadIssue};
 use chordal_nurbs::{DVec3, Range};
 
 /// Archives of an earlier openNURBS give edges and trims no domain of their own.
@@ -72,7 +72,11 @@ pub(super) fn read(mut data: Bytes, opennurbs: u32) -> Res<RawBrep> {
     match major {
         2 => read_version_2(&mut data),
         3 => read_version_3(&mut data, minor, opennurbs),
-        _ => Err(format!("a boundary representation of version {major}.{minor} is not read")),
+        _ => Err(ReadIssue::UnsupportedVersion {
+            what: "a boundary representation",
+            major: major.into(),
+            minor: minor.into(),
+        }),
     }
 }
 
@@ -117,7 +121,7 @@ fn objects<T>(data: &mut Bytes, read: impl Fn(&mut Bytes) -> Res<T>) -> Res<Vec<
     let mut all = Vec::with_capacity(count);
     for _ in 0..count {
         if body.i32()? != 1 {
-            all.push(Err("it is not in the file".into()));
+            all.push(Err(ReadIssue::Missing { what: "content in the file" }));
             continue;
         }
         // One that makes no sense is passed over as a whole.
@@ -150,7 +154,7 @@ fn version_1(body: &mut Bytes) -> Res<u32> {
     if major == 1 {
         Ok(u32::from(minor))
     } else {
-        Err(format!("a list of version {major}.{minor} is not read"))
+        Err(ReadIssue::UnsupportedVersion { what: "a list", major: major.into(), minor: minor.into() })
     }
 }
 
@@ -227,7 +231,7 @@ fn read_version_2(data: &mut Bytes) -> Res<RawBrep> {
     let counts = [data.i32()?, data.i32()?, data.i32()?, data.i32()?];
     let [faces, edges, loops, trims] = counts.map(|count| usize::try_from(count).unwrap_or(usize::MAX));
     if [faces, edges, loops, trims].iter().any(|&count| count > data.len() / 8) {
-        return Err(format!("its lists of {counts:?} items do not fit into the file"));
+        return Err(ReadIssue::ListTooLong { items: counts.iter().map(|&n| n as u64).max().unwrap_or(0) });
     }
     // A flag and a box.
     data.take(4 + 48)?;

@@ -8,8 +8,8 @@ use crate::assemble::Notes;
 use crate::assemble::PartBuilder;
 use crate::trimmed::Look;
 use chordal_brep::{
-    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Issue, Loop, Pcurve, ReadIssue, Shell,
-    ShellId, VertexId,
+    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Issue, Loop, Millimetres, Pcurve,
+    ReadIssue, Real, Shell, ShellId, VertexId,
 };
 use chordal_nurbs::{Curve, Curve2, DVec3, Range};
 use std::sync::Arc;
@@ -34,13 +34,15 @@ struct Maker<'a> {
     found: Vec<VertexId>,
     /// Such vertices are one within this distance.
     rounding: f64,
+    /// Millimetres of the file's unit.
+    millimetres: f64,
 }
 
 /// Ends of curves nearer than this part of the object's size are one vertex: they differ by rounding.
 const SAME_POINT: f64 = 1e-9;
 
 /// Adds all faces as a body.
-pub(super) fn add(builder: &mut PartBuilder, raw: &RawBrep, look: &Look, notes: &Notes) {
+pub(super) fn add(builder: &mut PartBuilder, raw: &RawBrep, look: &Look, notes: &Notes, millimetres: f64) {
     let vertices = raw.vertices.iter().map(|&point| builder.new_vertex(point, look.source)).collect();
     let curves = raw.curves.iter().map(|curve| {
         let (curve, stops) = curve.as_ref().ok()?.in_space();
@@ -50,7 +52,8 @@ pub(super) fn add(builder: &mut PartBuilder, raw: &RawBrep, look: &Look, notes: 
     let edges = vec![None; raw.edges.len()];
     let found = Vec::new();
     let rounding = SAME_POINT * size(raw);
-    let mut maker = Maker { raw, builder, notes, look, vertices, edges, curves, found, rounding };
+    let mut maker =
+        Maker { raw, builder, notes, look, vertices, edges, curves, found, rounding, millimetres };
     let faces: Vec<FaceId> = raw.faces.iter().enumerate().map(|(i, face)| maker.face(i, face)).collect();
     let closed = matches!(raw.solid, 1 | 2) || pairs_up(raw);
     let part = &mut maker.builder.part;
@@ -73,13 +76,13 @@ fn size(raw: &RawBrep) -> f64 {
     points.fold(0.0, |size, p| size.max(p.distance(first)))
 }
 
-fn at<'a, T>(list: &'a [T], index: i32, what: &str) -> Res<&'a T> {
+fn at<'a, T>(list: &'a [T], index: i32, what: &'static str) -> Res<&'a T> {
     let found = usize::try_from(index).ok().and_then(|i| list.get(i));
-    found.ok_or_else(|| format!("it refers to {what} {index} of {}", list.len()))
+    found.ok_or_else(|| ReadIssue::NotFound { what, number: i64::from(index) })
 }
 
-fn sound<'a, T>(list: &'a [Res<T>], index: i32, what: &str) -> Res<&'a T> {
-    at(list, index, what)?.as_ref().map_err(|why| format!("{what} {index}: {why}"))
+fn sound<'a, T>(list: &'a [Res<T>], index: i32, what: &'static str) -> Res<&'a T> {
+    at(list, index, what)?.as_ref().map_err(|why| why.clone().within(what, index as usize))
 }
 
 impl Maker<'_> {
@@ -91,7 +94,7 @@ impl Maker<'_> {
                 (FaceGeometry::Surface(Arc::new(surface.surface.clone())), same_sense, loops)
             }
             Err(why) => {
-                let reason = ReadIssue::from(format!("face {place} of the object: {why}"));
+                let reason = why.within("face", place);
                 (FaceGeometry::Failed(Issue::error(self.look.source, reason)), true, Vec::new())
             }
         };
@@ -129,7 +132,10 @@ impl Maker<'_> {
             }
             let gap = self.builder.close(&mut coedges, 0.0, self.look.source);
             if gap > 0.0 {
-                self.notes.warn(self.look.source, format!("a loop is open by {gap:.3e} and was closed"));
+                self.notes.warn(
+                    self.look.source,
+                    ReadIssue::GapClosed { gap: Millimetres(gap * self.millimetres) },
+                );
             }
             // Rhino's loops run about the surface's normal, whatever the face's.
             if raw.reversed {
@@ -139,7 +145,7 @@ impl Maker<'_> {
             loops.push(Loop::Edges { coedges, outer: boundary.kind != 2 });
         }
         if loops.is_empty() {
-            return Err("it has no loop".into());
+            return Err(ReadIssue::NoBoundary);
         }
         Ok((surface, loops))
     }
@@ -162,7 +168,7 @@ impl Maker<'_> {
         let pcurves = match pcurve {
             Ok((curve, range)) => vec![along_edge(curve, range, forward != trim.proxy.reversed)],
             Err(why) => {
-                self.notes.warn(self.look.source, format!("a trim curve is computed anew: {why}"));
+                self.notes.warn(self.look.source, ReadIssue::PcurveRecomputed { cause: why.boxed() });
                 Vec::new()
             }
         };
@@ -177,10 +183,13 @@ impl Maker<'_> {
             return Ok(made);
         }
         let domain = sound(&self.raw.curves, raw.curve, "curve")?.domain();
-        let (curve, stops) = self.curves[raw.curve as usize].clone().ok_or("its edge has no curve")?;
+        let (curve, stops) = self.curves[raw.curve as usize]
+            .clone()
+            .ok_or(ReadIssue::Missing { what: "curve of the edge" })?;
         let range = stops.range(part_of(&raw.proxy, domain));
         if !(range.is_finite() && range.start < range.end) {
-            return Err(format!("its edge {place} runs over {}..{}", range.start, range.end));
+            return Err(ReadIssue::EmptyRange { start: Real(range.start), end: Real(range.end) }
+                .within("edge", place));
         }
         let turned = raw.proxy.reversed;
         let [first, last] = if turned { [raw.vertices[1], raw.vertices[0]] } else { raw.vertices };
@@ -259,7 +268,7 @@ fn pcurve(curve: &RhinoCurve, proxy: &CurveUse, surface: &RhinoSurface) -> Res<(
     let (flat, stops) = curve.in_plane();
     let range = stops.range(part_of(proxy, curve.domain()));
     if !(range.is_finite() && range.start < range.end) {
-        return Err(format!("it runs over {}..{}", range.start, range.end));
+        return Err(ReadIssue::EmptyRange { start: Real(range.start), end: Real(range.end) });
     }
     surface.trim(flat, range)
 }

@@ -3,10 +3,11 @@
 //! A chunk is a type code, a length (32 bits, from version 50 on 64) and a body; short ones hold a number in place of
 //! the length. Bodies that end in a checksum have a type code that says so.
 
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DVec3, Range};
 
 /// What is wrong with a piece of the archive.
-pub(super) type Res<T> = Result<T, String>;
+pub(super) type Res<T> = Result<T, ReadIssue>;
 
 /// The code of chunks without a name of their own.
 pub(super) const ANONYMOUS: u32 = 0x4000_8000;
@@ -46,7 +47,7 @@ impl<'a> Bytes<'a> {
 
     pub(super) fn take(&mut self, count: usize) -> Res<&'a [u8]> {
         if count > self.rest.len() {
-            return Err(format!("it ends {} bytes early", count - self.rest.len()));
+            return Err(ReadIssue::EndsEarly { bytes: count - self.rest.len() });
         }
         let (head, rest) = self.rest.split_at(count);
         self.rest = rest;
@@ -88,7 +89,7 @@ impl<'a> Bytes<'a> {
         if range.is_finite() && range.start < range.end {
             Ok(range)
         } else {
-            Err(format!("a parameter range is {}..{}", range.start, range.end))
+            Err(ReadIssue::EmptyRange { start: Real(range.start), end: Real(range.end) })
         }
     }
 
@@ -98,11 +99,11 @@ impl<'a> Bytes<'a> {
         usize::try_from(count)
             .ok()
             .filter(|&count| count <= self.rest.len() / size)
-            .ok_or_else(|| format!("a list of {count} items does not fit into the file"))
+            .ok_or(ReadIssue::ListTooLong { items: count as u64 })
     }
 
     pub(super) fn f64s(&mut self, count: usize) -> Res<Vec<f64>> {
-        let size = count.checked_mul(8).ok_or("a list is too long")?;
+        let size = count.checked_mul(8).ok_or(ReadIssue::ListTooLong { items: count as u64 })?;
         let (numbers, _) = self.take(size)?.as_chunks::<8>();
         Ok(numbers.iter().map(|number| f64::from_le_bytes(*number)).collect())
     }
@@ -135,7 +136,8 @@ impl<'a> Bytes<'a> {
         if code & SHORT != 0 {
             return Ok(Chunk { code, value, body: Bytes::new(&[], self.version) });
         }
-        let length = usize::try_from(value).map_err(|_| format!("a chunk of {value} bytes"))?;
+        let length = usize::try_from(value)
+            .map_err(|_| ReadIssue::BadValue { what: "chunk length", value: Real(value as f64) })?;
         let body = self.take(length)?;
         // Version 1 has short checksums, and chunks that reach over the one of what they are in.
         let checksum = if code & HAS_CHECKSUM != 0 && self.version > 1 { 4 } else { 0 };
@@ -149,7 +151,10 @@ impl<'a> Bytes<'a> {
         if chunk.code == code {
             Ok(chunk.body)
         } else {
-            Err(format!("a chunk of type {:#010x} where one of type {code:#010x} should be", chunk.code))
+            Err(ReadIssue::UnknownKind {
+                found: format!("chunk of type {:#010x}", chunk.code).into(),
+                expected: "the chunk that belongs here",
+            })
         }
     }
 

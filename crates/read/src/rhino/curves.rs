@@ -5,6 +5,7 @@
 
 use super::bytes::{Bytes, Res};
 use super::object::{Class, object};
+use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{
     CompositeSegment, Curve, Curve2, DVec2, DVec3, Frame, Frame2, NurbsCurve, NurbsCurve3, Range,
 };
@@ -52,7 +53,7 @@ pub(super) fn bare_polycurve(bytes: &mut Bytes) -> Res<RhinoCurve> {
 pub(super) fn profiles(bytes: &mut Bytes) -> Res<Vec<RhinoCurve>> {
     let (class, mut data) = object(bytes)?;
     if class != Class::PolyCurve {
-        return Err("several profiles are no polycurve".into());
+        return Err(ReadIssue::UnknownKind { found: "group of profiles".into(), expected: "a polycurve" });
     }
     let count = polycurve_head(&mut data)?.len() - 1;
     (0..count).map(|_| curve_object(&mut data)).collect()
@@ -60,7 +61,7 @@ pub(super) fn profiles(bytes: &mut Bytes) -> Res<Vec<RhinoCurve>> {
 
 fn read(class: Class, data: &mut Bytes, depth: u32) -> Res<RhinoCurve> {
     if depth > MAX_DEPTH {
-        return Err("a curve is made of curves too often".into());
+        return Err(ReadIssue::Recursive { keyword: "polycurve".into(), levels: MAX_DEPTH });
     }
     match class {
         Class::NurbsCurve => nurbs(data).map(whole),
@@ -78,7 +79,7 @@ fn read(class: Class, data: &mut Bytes, depth: u32) -> Res<RhinoCurve> {
             polyline(points, data.f64s(count)?)
         }
         Class::PolyCurve => polycurve(data, depth),
-        _ => Err("a curve is of a class that is none of curves".into()),
+        _ => Err(ReadIssue::UnknownKind { found: "object".into(), expected: "a curve" }),
     }
 }
 
@@ -89,12 +90,12 @@ fn whole(curve: NurbsCurve3) -> RhinoCurve {
 
 fn polyline(points: Vec<DVec3>, parameters: Vec<f64>) -> Res<RhinoCurve> {
     let (Some(&first), Some(&last)) = (parameters.first(), parameters.last()) else {
-        return Err("a polyline has no points".into());
+        return Err(ReadIssue::TooFew { what: "polyline points", found: 0, least: 2 });
     };
     let mut knots = vec![first];
     knots.extend(parameters);
     knots.push(last);
-    NurbsCurve::new(1, knots, points, None).map(whole).map_err(|e| e.to_string())
+    NurbsCurve::new(1, knots, points, None).map(whole).map_err(ReadIssue::from)
 }
 
 fn arc(data: &mut Bytes) -> Res<RhinoCurve> {
@@ -105,7 +106,7 @@ fn arc(data: &mut Bytes) -> Res<RhinoCurve> {
     data.take(72)?;
     let (angle, range) = (data.range()?, data.range()?);
     if !radius.is_finite() || radius <= 0.0 {
-        return Err(format!("an arc has the radius {radius}"));
+        return Err(ReadIssue::BadValue { what: "arc radius", value: Real(radius) });
     }
     let pieces = vec![Piece { shape: Shape::Circle { frame, radius }, own: angle }];
     Ok(RhinoCurve { pieces, stops: vec![range.start, range.end] })
@@ -116,7 +117,7 @@ pub(super) fn plane(data: &mut Bytes) -> Res<Frame> {
     let (origin, x, y, z) = (data.point()?, data.point()?, data.point()?, data.point()?);
     data.take(32)?;
     if !(origin.is_finite() && z.is_finite()) || x.cross(y).dot(z) < 0.5 {
-        return Err("a plane's axes are not at right angles".into());
+        return Err(ReadIssue::AxesNotOrthogonal);
     }
     Ok(Frame::new(origin, z, x))
 }
@@ -130,7 +131,11 @@ fn polycurve_head(data: &mut Bytes) -> Res<Vec<f64>> {
     let given = data.count(8)?;
     let parameters = data.f64s(given)?;
     if count == 0 || parameters.len() != count + 1 {
-        return Err(format!("a curve of {count} pieces has {} parameters", parameters.len()));
+        return Err(ReadIssue::Count {
+            what: "parameters of pieces",
+            found: parameters.len(),
+            expected: count + 1,
+        });
     }
     Ok(parameters)
 }
@@ -149,7 +154,7 @@ fn polycurve(data: &mut Bytes, depth: u32) -> Res<RhinoCurve> {
         joined.pieces.extend(piece.pieces);
     }
     if joined.stops.windows(2).any(|pair| !(pair[0] < pair[1])) {
-        return Err("the parameters of a curve's pieces do not increase".into());
+        return Err(ReadIssue::NotIncreasing { what: "parameters of the pieces" });
     }
     Ok(joined)
 }
@@ -165,17 +170,17 @@ fn nurbs(data: &mut Bytes) -> Res<NurbsCurve3> {
     let points = data.count(8)?;
     let degree = degree(order)?;
     if !matches!(dimension, 2 | 3) || usize::try_from(count).ok() != Some(points) {
-        return Err(format!("a curve of {points} points says that it has {count} of dimension {dimension}"));
+        return Err(ReadIssue::Count { what: "control points", found: points, expected: count as usize });
     }
     let (points, weights) = control_points(data, points, dimension == 3, rational)?;
-    NurbsCurve::new(degree, knots, points, weights).map_err(|e| e.to_string())
+    NurbsCurve::new(degree, knots, points, weights).map_err(ReadIssue::from)
 }
 
 pub(super) fn degree(order: i32) -> Res<usize> {
     usize::try_from(order)
         .ok()
         .and_then(|order| order.checked_sub(1))
-        .ok_or_else(|| format!("its order is {order}"))
+        .ok_or_else(|| ReadIssue::BadValue { what: "order", value: Real(f64::from(order)) })
 }
 
 /// Knots with their count, made complete.

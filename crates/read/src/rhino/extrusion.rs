@@ -8,7 +8,8 @@ use super::curves::{Piece, RhinoCurve, Shape, curve_object, profiles};
 use crate::assemble::PartBuilder;
 use crate::trimmed::Look;
 use chordal_brep::{
-    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, Shell, ShellId, VertexId,
+    Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, ReadIssue, Shell, ShellId,
+    VertexId,
 };
 use chordal_nurbs::{Curve, DAffine3, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface};
 use std::sync::Arc;
@@ -53,7 +54,7 @@ fn read(mut data: Bytes) -> Res<Extrusion> {
     let mut body = data.chunk_of(ANONYMOUS)?;
     let (major, minor) = (body.i32()?, body.i32()?);
     if major != 1 {
-        return Err(format!("an extrusion of version {major}.{minor} is not read"));
+        return Err(ReadIssue::UnsupportedVersion { what: "an extrusion", major, minor });
     }
     let start = body;
     body.chunk()?;
@@ -66,10 +67,10 @@ fn read(mut data: Bytes) -> Res<Extrusion> {
     let count = if minor >= 1 { body.i32()? } else { 1 };
     let caps = if minor >= 2 { [body.u8()? != 0, body.u8()? != 0] } else { [false; 2] };
     if mitred {
-        return Err("an extrusion with mitred ends is not read".into());
+        return Err(ReadIssue::Unsupported { what: "extrusion with mitred ends".into() });
     }
-    let z = (to - from).try_normalize().ok_or("the path of an extrusion has no length")?;
-    let x = up.cross(z).try_normalize().ok_or("an extrusion's up is along its path")?;
+    let z = (to - from).try_normalize().ok_or(ReadIssue::NoLength { what: "path of the extrusion" })?;
+    let x = up.cross(z).try_normalize().ok_or(ReadIssue::ParallelAxes)?;
     let mut start = start;
     let profiles = if count > 1 { profiles(&mut start)? } else { vec![curve_object(&mut start)?] };
     let frame = Frame::new(from + (to - from) * along.start, z, x);
@@ -207,7 +208,7 @@ fn smooth_parts(curve: &NurbsCurve3, own: Range) -> Res<Vec<NurbsCurve3>> {
         }
     }
     stops.push(own.end);
-    let part = |pair: &[f64]| curve.piece(Range::new(pair[0], pair[1])).map_err(|e| e.to_string());
+    let part = |pair: &[f64]| curve.piece(Range::new(pair[0], pair[1])).map_err(ReadIssue::from);
     stops.windows(2).map(part).collect()
 }
 

@@ -10,7 +10,7 @@ use crate::Winding;
 use crate::assemble::Notes;
 use crate::flat::LengthUnit;
 use crate::trimmed::{Look, Piece, Role, TrimLoop, add_body, add_faces, add_failed};
-use chordal_brep::{BodyKind, FaceId, LooseItem, LooseKind, Part, Source};
+use chordal_brep::{BodyKind, FaceId, LooseItem, LooseKind, Part, ReadIssue, Real, Source};
 use chordal_nurbs::{Curve2, DVec3, NurbsCurve, NurbsCurve3, NurbsSurface, Surface};
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ pub(super) fn read(mut file: Bytes, whole: &[u8], part: &mut Part, notes: &Notes
         let chunk = match file.chunk() {
             Ok(chunk) => chunk,
             Err(why) => {
-                notes.lose(source, format!("the archive is damaged: {why}"));
+                notes.lose(source, ReadIssue::Damaged { what: "the archive", cause: why.boxed() });
                 break;
             }
         };
@@ -52,9 +52,9 @@ pub(super) fn read(mut file: Bytes, whole: &[u8], part: &mut Part, notes: &Notes
             }
             CURVE | SPLINE => loose(part, LooseKind::Wire, source),
             POINT => loose(part, LooseKind::Point, source),
-            MESH => notes.lose(source, "a mesh of version 1 is not read"),
+            MESH => notes.lose(source, ReadIssue::Unsupported { what: "mesh of a version 1 file".into() }),
             code if TOOLKIT.contains(&code) => {
-                notes.lose(source, "an object of the first toolkit is not read");
+                notes.lose(source, ReadIssue::Unsupported { what: "object of the first toolkit".into() });
             }
             UNITS => unit = units(chunk.body).unwrap_or(unit),
             _ => {}
@@ -80,7 +80,7 @@ fn stuff<'a>(mut body: Bytes<'a>, of: u32) -> Res<Bytes<'a>> {
             return Ok(chunk.body);
         }
     }
-    Err("an object has no contents".into())
+    Err(ReadIssue::Missing { what: "content of an object" })
 }
 
 fn shell(body: Bytes, part: &mut Part, look: &Look, notes: &Notes) {
@@ -96,7 +96,10 @@ fn shell(body: Bytes, part: &mut Part, look: &Look, notes: &Notes) {
             match data.chunk_of(FACE) {
                 Ok(body) => faces.extend(face(body, part, look, notes)),
                 Err(why) => {
-                    notes.lose(look.source, format!("faces of a shell are missing: {why}"));
+                    notes.lose(
+                        look.source,
+                        ReadIssue::Damaged { what: "the list of faces", cause: why.boxed() },
+                    );
                     break;
                 }
             }
@@ -165,7 +168,11 @@ fn curve(mut data: Bytes) -> Res<Vec<NurbsCurve3>> {
 }
 
 fn dimension(byte: u8) -> Res<usize> {
-    if matches!(byte, 2 | 3) { Ok(usize::from(byte)) } else { Err(format!("a curve has dimension {byte}")) }
+    if matches!(byte, 2 | 3) {
+        Ok(usize::from(byte))
+    } else {
+        Err(ReadIssue::BadValue { what: "curve dimension", value: Real(f64::from(byte)) })
+    }
 }
 
 fn spline(mut data: Bytes) -> Res<NurbsCurve3> {
@@ -176,11 +183,11 @@ fn spline(mut data: Bytes) -> Res<NurbsCurve3> {
     // Whether it is closed, and its form; a box.
     data.take(2 + 16 * dimension)?;
     if order < 2 || count < order {
-        return Err(format!("a curve of order {order} has {count} control points"));
+        return Err(ReadIssue::TooFew { what: "control points", found: count, least: order });
     }
     let knots = knots(&mut data, order, count)?;
     let (points, weights) = control_points(&mut data, count, dimension, rational)?;
-    NurbsCurve::new(order - 1, completed(knots), points, weights).map_err(|e| e.to_string())
+    NurbsCurve::new(order - 1, completed(knots), points, weights).map_err(ReadIssue::from)
 }
 
 /// Knots of which a clamped end is written once.
@@ -230,11 +237,11 @@ fn surface(mut data: Bytes) -> Res<NurbsSurface> {
     // Closed, singular; a box.
     data.take(4 + 16 * dimension)?;
     if degree.contains(&0) {
-        return Err("a surface of degree 0".into());
+        return Err(ReadIssue::BadValue { what: "degree", value: Real(0.0) });
     }
     let knots_u = completed(data.f64s(degree[0] + count[0] - 1)?);
     let knots_v = completed(data.f64s(degree[1] + count[1] - 1)?);
     let rational = if rational[1] != 0 { rational[1] } else { rational[0] };
     let (points, weights) = control_points(&mut data, count[0] * count[1], dimension, rational)?;
-    NurbsSurface::new(degree, knots_u, knots_v, points, weights).map_err(|e| e.to_string())
+    NurbsSurface::new(degree, knots_u, knots_v, points, weights).map_err(ReadIssue::from)
 }

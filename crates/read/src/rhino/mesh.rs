@@ -3,7 +3,7 @@
 use super::bytes::{ANONYMOUS, Bytes, Res};
 use crate::scene::polygons::triangulate;
 use crate::trimmed::Look;
-use chordal_brep::TessellatedItem;
+use chordal_brep::{ReadIssue, Real, TessellatedItem};
 use chordal_nurbs::DVec3;
 use flate2::read::ZlibDecoder;
 use std::borrow::Cow;
@@ -13,7 +13,11 @@ use std::io::Read;
 pub(super) fn mesh(mut data: Bytes, look: &Look) -> Res<TessellatedItem> {
     let (major, minor) = data.version()?;
     if !matches!(major, 1 | 3) {
-        return Err(format!("a mesh of version {major}.{minor} is not read"));
+        return Err(ReadIssue::UnsupportedVersion {
+            what: "a mesh",
+            major: major.into(),
+            minor: minor.into(),
+        });
     }
     let (vertices, faces) = (data.i32()?, data.i32()?);
     // Ranges of textures and of the surface, scales, boxes, whether it is closed.
@@ -26,7 +30,8 @@ pub(super) fn mesh(mut data: Bytes, look: &Look) -> Res<TessellatedItem> {
     }
     let corners = corners(&mut data, faces)?;
     let size = usize::try_from(vertices).ok().and_then(|count| count.checked_mul(12));
-    let size = size.ok_or_else(|| format!("a mesh has {vertices} vertices"))?;
+    let size =
+        size.ok_or(ReadIssue::BadValue { what: "number of vertices", value: Real(vertices as f64) })?;
     let bytes = if major == 1 {
         let count = data.count(12)?;
         Cow::Borrowed(data.take(12 * count)?)
@@ -34,7 +39,7 @@ pub(super) fn mesh(mut data: Bytes, look: &Look) -> Res<TessellatedItem> {
         buffer(&mut data)?
     };
     if bytes.len() != size {
-        return Err(format!("a mesh has {vertices} vertices in {} bytes", bytes.len()));
+        return Err(ReadIssue::Count { what: "bytes of vertices", found: bytes.len(), expected: size });
     }
     let mut coordinates = Bytes::new(&bytes, data.version);
     let mut points = Vec::with_capacity(size / 12);
@@ -45,7 +50,7 @@ pub(super) fn mesh(mut data: Bytes, look: &Look) -> Res<TessellatedItem> {
     let mut triangles = Vec::new();
     for face in corners.chunks_exact(4) {
         if face.iter().any(|&corner| !points.get(corner as usize).is_some_and(|p| p.is_finite())) {
-            return Err("a face of a mesh refers to a vertex that is not there".into());
+            return Err(ReadIssue::PolygonsLost { polygons: 1 });
         }
         triangulate(&points, if face[2] == face[3] { &face[..3] } else { face }, &mut triangles);
     }
@@ -57,12 +62,13 @@ pub(super) fn mesh(mut data: Bytes, look: &Look) -> Res<TessellatedItem> {
 fn corners(data: &mut Bytes, faces: i32) -> Res<Vec<u32>> {
     let width = data.i32()?;
     let count = usize::try_from(faces).ok().filter(|&count| count <= data.len() / 4);
-    let count = 4 * count.ok_or_else(|| format!("a mesh has {faces} faces"))?;
+    let count =
+        4 * count.ok_or(ReadIssue::BadValue { what: "number of faces", value: Real(faces as f64) })?;
     match width {
         1 => (0..count).map(|_| data.u8().map(u32::from)).collect(),
         2 => (0..count).map(|_| data.u16().map(u32::from)).collect(),
         4 => (0..count).map(|_| data.u32()).collect(),
-        _ => Err(format!("corners of a mesh are {width} bytes wide")),
+        _ => Err(ReadIssue::BadValue { what: "corner width (bytes)", value: Real(width as f64) }),
     }
 }
 
@@ -82,9 +88,11 @@ fn buffer<'a>(data: &mut Bytes<'a>) -> Res<Cow<'a, [u8]>> {
             let mut unpacked = Vec::new();
             // One byte more than stated shows a buffer that is too long; what is stated too high costs nothing.
             let mut decoder = ZlibDecoder::new(packed).take(size as u64 + 1);
-            decoder.read_to_end(&mut unpacked).map_err(|e| format!("a compressed buffer is damaged: {e}"))?;
+            decoder
+                .read_to_end(&mut unpacked)
+                .map_err(|e| ReadIssue::TextBroken { reason: e.to_string() })?;
             Ok(Cow::Owned(unpacked))
         }
-        method => Err(format!("a buffer is compressed by the unknown method {method}")),
+        method => Err(ReadIssue::BadValue { what: "compression method", value: Real(method as f64) }),
     }
 }

@@ -17,9 +17,9 @@ mod object;
 mod surfaces;
 mod tables;
 
-use crate::ReadError;
 use crate::flat;
-use chordal_brep::Model;
+use crate::{Format, ReadError};
+use chordal_brep::{Model, ReadIssue, Source};
 
 /// What every archive begins with; its version follows in eight characters.
 const MAGIC: &[u8] = b"3D Geometry File Format ";
@@ -31,18 +31,17 @@ pub(crate) fn looks_like_3dm(bytes: &[u8]) -> bool {
 
 /// Reads a 3DM archive.
 pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
-    let bad = |problem: String| ReadError::Unreadable { name: name.to_owned(), format: "3DM", problem };
+    let bad = |issue: ReadIssue| ReadError::refused(Format::Rhino, Source::default(), issue);
     let head = bytes.get(MAGIC.len()..MAGIC.len() + 8).map(<[u8]>::trim_ascii).unwrap_or_default();
     let version: Option<u32> = std::str::from_utf8(head).ok().and_then(|text| text.parse().ok());
-    let version = version.ok_or_else(|| bad("its head has no version".into()))?;
+    let version = version.ok_or_else(|| bad(ReadIssue::Missing { what: "version in the head" }))?;
     if !matches!(version, 1..=4 | 5..=8 | 50..=89) {
-        return Err(bad(format!("its version is {version}")));
+        return Err(bad(ReadIssue::UnknownVersion { version }));
     }
     let read = archive::read(bytes, version);
     let part = read.part;
     if part.faces.is_empty() && part.tessellated.is_empty() && part.loose.is_empty() {
-        let first = read.issues.first().map(|issue| format!(" ({issue})")).unwrap_or_default();
-        return Err(bad(format!("it holds no surface, no mesh and no curve{first}")));
+        return Err(ReadError::nothing(Format::Rhino, read.objects, read.issues.first().cloned()));
     }
     let schema = format!("Rhino 3DM version {}", if version >= 50 { version / 10 } else { version });
     Ok(flat::model(name, schema, read.unit, part, read.issues))

@@ -3,6 +3,7 @@
 use super::bytes::{Bytes, Res};
 use super::curves::{control_points, curve_object, degree, knots, plane};
 use super::object::{Class, object};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve, Curve2, DVec2, DVec3, NurbsCurve3, NurbsSurface, Range, Surface, UvBox};
 
 /// A surface with the map from Rhino's parameters to its own: exchanged where `swapped`, then scaled and moved.
@@ -23,7 +24,7 @@ pub(super) fn surface(class: Class, mut data: Bytes) -> Res<RhinoSurface> {
         Class::PlaneSurface => plane_surface(&mut data),
         Class::RevSurface => revolution(&mut data),
         Class::SumSurface => sum(&mut data).map(RhinoSurface::plain),
-        _ => Err("its surface is of a class that is not read".into()),
+        _ => Err(ReadIssue::Unsupported { what: "the class of the surface".into() }),
     }
 }
 
@@ -57,7 +58,7 @@ impl RhinoSurface {
         }
         let nurbs = match curve {
             Curve2::Nurbs(nurbs) => nurbs,
-            other => other.to_nurbs(range).map_err(|e| e.to_string())?,
+            other => other.to_nurbs(range).map_err(ReadIssue::from)?,
         };
         Ok((Curve2::Nurbs(nurbs.mapped(|p| self.parameters(p))), range))
     }
@@ -75,13 +76,15 @@ pub(super) fn nurbs_surface(data: &mut Bytes) -> Res<NurbsSurface> {
     let points = data.count(8)?;
     if !matches!(dimension, 2 | 3) || i64::from(counts[0]) * i64::from(counts[1]) != points as i64 {
         let [u, v] = counts;
-        return Err(format!(
-            "its surface has {points} control points and says {u} × {v} of dimension {dimension}"
-        ));
+        return Err(ReadIssue::Count {
+            what: "control points",
+            found: points,
+            expected: (u as usize).saturating_mul(v as usize),
+        });
     }
     let (points, weights) = control_points(data, points, dimension == 3, rational)?;
     let degree = [degree(orders[0])?, degree(orders[1])?];
-    NurbsSurface::new(degree, knots_u, knots_v, points, weights).map_err(|e| e.to_string())
+    NurbsSurface::new(degree, knots_u, knots_v, points, weights).map_err(ReadIssue::from)
 }
 
 fn plane_surface(data: &mut Bytes) -> Res<RhinoSurface> {
@@ -105,11 +108,11 @@ fn revolution(data: &mut Bytes) -> Res<RhinoSurface> {
     data.take(48)?;
     let swapped = data.i32()? != 0;
     if data.u8()? == 0 {
-        return Err("its surface of revolution has no profile".into());
+        return Err(ReadIssue::Missing { what: "profile of the surface of revolution" });
     }
     let profile = curve_object(data)?;
     let along = profile.domain();
-    let axis = (to - from).try_normalize().ok_or("its axis has no length")?;
+    let axis = (to - from).try_normalize().ok_or(ReadIssue::ZeroVector { what: "axis" })?;
     let (curve, stops) = profile.in_space();
     let (curve, own) = match curve {
         // The joints of several pieces have parameters of their own; a spline has Rhino's.
@@ -126,11 +129,11 @@ fn revolution(data: &mut Bytes) -> Res<RhinoSurface> {
 /// A curve as a spline over another domain. Within arcs its parameters differ a little from Rhino's; where a trim then
 /// leaves its edge, the edge is followed.
 fn with_parameters(curve: &Curve, own: &Range, domain: Range) -> Res<NurbsCurve3> {
-    let nurbs = curve.to_nurbs(*own).map_err(|e| e.to_string())?;
+    let nurbs = curve.to_nurbs(*own).map_err(ReadIssue::from)?;
     let at = |t: f64| domain.start + (t - own.start) / own.length() * domain.length();
     let knots = nurbs.knots().iter().map(|&t| at(t)).collect();
     NurbsCurve3::new(nurbs.degree(), knots, nurbs.points().to_vec(), nurbs.weights().map(<[f64]>::to_vec))
-        .map_err(|e| e.to_string())
+        .map_err(ReadIssue::from)
 }
 
 /// The sum of two curves: every control point of one added to every one of the other, weights multiplied.
@@ -148,7 +151,9 @@ fn sum(data: &mut Bytes) -> Res<NurbsSurface> {
             other => with_parameters(&other, &stops.range(side.domain()), side.domain())?,
         });
     }
-    let [a, b] = &sides[..] else { return Err("its surface lacks a curve".into()) };
+    let [a, b] = &sides[..] else {
+        return Err(ReadIssue::Missing { what: "second curve of the sum surface" });
+    };
     sum_of(a, b, base)
 }
 
@@ -165,5 +170,5 @@ pub(super) fn sum_of(a: &NurbsCurve3, b: &NurbsCurve3, base: DVec3) -> Res<Nurbs
     let rational = a.weights().is_some() || b.weights().is_some();
     let (knots_u, knots_v) = (a.knots().to_vec(), b.knots().to_vec());
     NurbsSurface::new([a.degree(), b.degree()], knots_u, knots_v, points, rational.then_some(weights))
-        .map_err(|e| e.to_string())
+        .map_err(ReadIssue::from)
 }

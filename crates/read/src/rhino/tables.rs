@@ -3,17 +3,16 @@
 use super::bytes::{Bytes, Res};
 use super::object::{Class, object};
 use crate::flat::LengthUnit;
-use chordal_brep::Color;
+use chordal_brep::{Color, ReadIssue};
 
 const UNITS: u32 = 0x2000_8031;
 const LAYER_RECORD: u32 = 0x2000_8050;
 
-/// A layer's name and colour.
+/// A layer's name.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
     pub index: i32,
     pub name: String,
-    pub color: Option<Color>,
 }
 
 /// What the attributes of an object say.
@@ -97,17 +96,16 @@ pub(super) fn layers(mut table: Bytes) -> Vec<Layer> {
 fn layer(mut record: Bytes) -> Res<Layer> {
     let (class, mut data) = object(&mut record)?;
     if class != Class::Layer {
-        return Err("a layer is of another class".into());
+        return Err(ReadIssue::UnknownKind { found: "entry of the layer table".into(), expected: "a layer" });
     }
     data.version()?;
     data.i32()?;
     let index = data.i32()?;
     // IGES level, material, and one that is obsolete.
     data.take(12)?;
-    let color = color(&mut data)?;
-    // An obsolete style of lines.
-    data.take(4 + 16)?;
-    Ok(Layer { index, name: data.text()?, color })
+    // The colour of its wires, and an obsolete style of lines.
+    data.take(4 + 4 + 16)?;
+    Ok(Layer { index, name: data.text()? })
 }
 
 /// A colour in sRGB with its transparency; `None` where it is unset.

@@ -1,5 +1,6 @@
 //! Knot vectors as these formats leave them out, shorten them or close them.
 
+use chordal_brep::{ReadIssue, Real};
 /// One parameter direction of a spline.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Direction {
@@ -18,15 +19,18 @@ pub(crate) struct Direction {
 /// its first and last points agree, is made periodic where its knots do not end it there.
 ///
 /// # Errors
-/// A sentence, where order and number of points make no spline.
+/// Where order and number of points make no spline.
 pub(crate) fn direction(
     count: usize,
     order: usize,
     given: &[f64],
     closed: bool,
-) -> Result<Direction, String> {
-    if order < 2 || count < order {
-        return Err(format!("{count} control points of order {order} make no spline"));
+) -> Result<Direction, ReadIssue> {
+    if order < 2 {
+        return Err(ReadIssue::BadValue { what: "order", value: Real(order as f64) });
+    }
+    if count < order {
+        return Err(ReadIssue::TooFew { what: "control points", found: count, least: order });
     }
     let degree = order - 1;
     let fits = given.len() == count + order

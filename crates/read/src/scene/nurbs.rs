@@ -1,6 +1,7 @@
 //! Spline surfaces and curves from nets of homogeneous control points, u running fastest.
 
 use super::knots::{Direction, direction};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4, NurbsCurve2, NurbsSurface};
 
 /// Control points nearer together than this share of the net's size are one: files hold 32-bit numbers.
@@ -30,19 +31,23 @@ pub(crate) fn weighted(points: &[DVec3], weights: &[f64]) -> Vec<DVec4> {
 /// The surface of a net, and what was repaired.
 ///
 /// # Errors
-/// A sentence, where the net makes no surface.
-pub(crate) fn surface(net: &Net<'_>) -> Result<(NurbsSurface, Vec<String>), String> {
+/// Where the net makes no surface.
+pub(crate) fn surface(net: &Net<'_>) -> Result<(NurbsSurface, Vec<ReadIssue>), ReadIssue> {
     let [count_u, count_v] = net.counts;
-    let needed = count_u.checked_mul(count_v).filter(|&n| n > 0).ok_or("it has no control points")?;
+    let needed = count_u.checked_mul(count_v).filter(|&n| n > 0).ok_or(ReadIssue::TooFew {
+        what: "control points",
+        found: 0,
+        least: 1,
+    })?;
     if net.points.len() < needed {
-        return Err(format!("{} control points where {count_u} × {count_v} are needed", net.points.len()));
+        return Err(ReadIssue::TooFew { what: "control points", found: net.points.len(), least: needed });
     }
     let at = |i: usize, j: usize| net.points[j * count_u + i];
     let same = same_points(&net.points[..needed]);
     let meets_u = (0..count_v).all(|j| same(at(0, j), at(count_u - 1, j)));
     let meets_v = (0..count_u).all(|i| same(at(i, 0), at(i, count_v - 1)));
     let mut notes = Vec::new();
-    let mut along = |axis: usize, meets: bool| -> Result<Direction, String> {
+    let mut along = |axis: usize, meets: bool| -> Result<Direction, ReadIssue> {
         let closed = net.closed[axis] && meets;
         let found = direction(net.counts[axis], net.orders[axis], net.knots[axis], closed)?;
         note_knots(&found, net.knots[axis].len(), ["u", "v"][axis], &mut notes);
@@ -61,7 +66,7 @@ pub(crate) fn surface(net: &Net<'_>) -> Result<(NurbsSurface, Vec<String>), Stri
     let mut points: Vec<DVec3> = points.into_iter().map(|p| p.truncate() / p.w).collect();
     join_rounded(&mut points, &[&u, &v]);
     let surface = NurbsSurface::new([u.degree, v.degree], u.knots, v.knots, points, Some(weights))
-        .map_err(|error| error.to_string())?;
+        .map_err(ReadIssue::from)?;
     Ok((surface, notes))
 }
 
@@ -95,16 +100,16 @@ fn join_rounded(points: &mut [DVec3], directions: &[&Direction; 2]) {
 /// A curve of parameter space; points are (wx, wy, w).
 ///
 /// # Errors
-/// A sentence, where they make no curve.
+/// Where they make no curve.
 pub(crate) fn curve2(
     points: &[DVec3],
     order: usize,
     knots: &[f64],
     closed: bool,
-    notes: &mut Vec<String>,
-) -> Result<Curve2, String> {
+    notes: &mut Vec<ReadIssue>,
+) -> Result<Curve2, ReadIssue> {
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
-        return Err("it has no control points".to_owned());
+        return Err(ReadIssue::TooFew { what: "control points", found: 0, least: 1 });
     };
     let homogeneous: Vec<DVec4> = points.iter().map(|p| p.extend(0.0)).collect();
     let closed = closed && same_points(&homogeneous)(first.extend(0.0), last.extend(0.0));
@@ -114,15 +119,13 @@ pub(crate) fn curve2(
     let weights = all().map(|p| p.z).collect();
     let cartesian = all().map(|p| DVec2::new(p.x, p.y) / p.z).collect();
     let curve = NurbsCurve2::new(found.degree, found.knots.clone(), cartesian, Some(weights));
-    curve.map(Curve2::Nurbs).map_err(|error| error.to_string())
+    curve.map(Curve2::Nurbs).map_err(ReadIssue::from)
 }
 
-fn note_knots(found: &Direction, given: usize, which: &str, notes: &mut Vec<String>) {
+fn note_knots(found: &Direction, given: usize, which: &'static str, notes: &mut Vec<ReadIssue>) {
     if found.replaced {
         let needed = found.knots.len() - found.wrapped;
-        notes.push(format!(
-            "{which} knots do not fit ({given} where {needed} in increasing order are needed); even ones are used"
-        ));
+        notes.push(ReadIssue::KnotsReplaced { which, found: given, expected: needed });
     }
 }
 

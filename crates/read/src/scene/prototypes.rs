@@ -1,6 +1,7 @@
 //! Instances of prototypes become what their prototype consists of.
 
 use super::graph::{Graph, NodeIx, Value};
+use chordal_brep::ReadIssue;
 use rustc_hash::FxHashMap;
 
 /// What may be copied for each node of the file, and for any file: prototypes of prototypes fan out for ever.
@@ -20,9 +21,7 @@ pub(crate) fn expand(graph: &mut Graph) {
         let body = graph.prototypes.get(&kind).filter(|p| !p.external).map(|p| p.body.clone());
         if let Some(body) = body {
             if body.iter().any(|&b| graph.node(b).kind == "Script") {
-                graph
-                    .notes
-                    .warn(source, format!("{kind} is a prototype with a Script, which is not run here"));
+                graph.notes.warn(source, ReadIssue::ProgramIgnored { what: "Script of a prototype" });
             }
             let copied = body.first().and_then(|&first| {
                 let mut copy = Copy { graph, known: FxHashMap::default(), instance: ix as NodeIx, budget };
@@ -38,14 +37,18 @@ pub(crate) fn expand(graph: &mut Graph) {
                         (copied.kind, copied.fields, copied.children);
                     if target.kind == kind {
                         target.kind.clear();
-                        graph.notes.lose(source, format!("prototype {kind} consists of itself; left out"));
+                        graph.notes.lose(source, ReadIssue::UsedInItself { node: kind.to_string() });
                     } else if graph.prototypes.contains_key(&graph.nodes[ix].kind) {
                         continue;
                     }
                 }
-                None => graph
-                    .notes
-                    .lose(source, format!("prototype {kind} has no body that could be used; left out")),
+                None => graph.notes.lose(
+                    source,
+                    ReadIssue::InNode {
+                        node: kind.to_string(),
+                        cause: ReadIssue::Missing { what: "usable body of the prototype" }.boxed(),
+                    },
+                ),
             }
         }
         ix += 1;

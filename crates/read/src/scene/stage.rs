@@ -2,11 +2,11 @@
 //! become parts of their own.
 
 use super::graph::{Graph, NodeIx};
-use crate::ReadError;
 use crate::assemble::Notes;
 use crate::trimmed::{self, Look, TrimLoop};
+use crate::{Format, ReadError};
 use chordal_brep::{
-    BodyKind, Color, FaceGeometry, LooseItem, LooseKind, Model, Node, NodeId, Part, PartId, ReadIssue,
+    BodyKind, Color, FaceGeometry, Issue, LooseItem, LooseKind, Model, Node, NodeId, Part, PartId, ReadIssue,
     Source, TessellatedItem,
 };
 use chordal_nurbs::{DAffine3, DVec3, NurbsSurface, Surface};
@@ -72,9 +72,7 @@ impl Stage {
         let cost = 1 + size as u64;
         if self.budget < cost {
             if !self.exhausted {
-                let message =
-                    "nodes are used within nodes that are used too often; what comes after is left out";
-                self.notes.lose(source, message);
+                self.notes.lose(source, ReadIssue::TooManyReferences);
             }
             self.exhausted = true;
             self.budget = 0;
@@ -108,7 +106,7 @@ impl Stage {
     /// Places what a closed part consists of.
     pub(crate) fn place(&mut self, what: &[Placed], transform: &DAffine3, source: Source) {
         if !transform.is_finite() {
-            self.notes.lose(source, "the place of a shape is not finite; left out");
+            self.notes.lose(source, ReadIssue::NotFinite { what: "placement of the shape" });
         } else if self.afford(PLACEMENT * what.len(), source) {
             let moved = |p: &Placed| Placed { transform: *transform * p.transform, ..p.clone() };
             self.frame().placed.extend(what.iter().map(moved));
@@ -125,7 +123,7 @@ impl Stage {
     ) {
         let moved = nurbs.transformed(world);
         if !moved.points().iter().all(|p| p.is_finite()) {
-            return self.failed("its place is not finite".into(), look);
+            return self.failed(ReadIssue::NotFinite { what: "placement of the shape" }, look);
         }
         let surface = Arc::new(Surface::Nurbs(moved));
         let look = Look { flipped: look.flipped ^ mirrors(world), ..look.clone() };
@@ -164,7 +162,7 @@ impl Stage {
         if item.points.iter().all(|p| p.is_finite()) {
             self.part().tessellated.push(item);
         } else {
-            self.notes.lose(look.source, "polygons with corners that are not finite; left out");
+            self.notes.lose(look.source, ReadIssue::NotFinite { what: "corner of a polygon" });
         }
     }
 
@@ -187,6 +185,7 @@ impl Stage {
     /// [`ReadError::NothingInIt`] where there is no shape.
     pub(crate) fn finish(
         mut self,
+        format: Format,
         graph: &mut Graph,
         name: &str,
         schema: String,
@@ -200,14 +199,9 @@ impl Stage {
         let all = || std::iter::once(&common).chain(&self.parts);
         let nothing = !all().any(has_shape);
         if nothing {
-            let worst =
-                issues.iter().find(|issue| issue.is_error()).or(issues.first()).map(ToString::to_string);
-            let problem = all().find_map(first_failure).or(worst).unwrap_or("no node is a shape".to_owned());
-            return Err(ReadError::NothingInIt {
-                name: name.to_owned(),
-                entities: graph.nodes.len(),
-                problem,
-            });
+            let worst = issues.iter().find(|issue| issue.is_error()).or(issues.first());
+            let cause = all().find_map(first_failure).or(worst.cloned());
+            return Err(ReadError::nothing(format, graph.nodes.len(), cause));
         }
         common.name = name.to_owned();
         if has_common {
@@ -263,11 +257,8 @@ fn has_shape(part: &Part) -> bool {
     faces || !part.tessellated.is_empty() || !part.loose.is_empty() && part.faces.is_empty()
 }
 
-fn first_failure(part: &Part) -> Option<String> {
-    part.faces.iter().find_map(|face| match &face.geometry {
-        FaceGeometry::Failed(issue) => Some(issue.to_string()),
-        FaceGeometry::Surface(_) => None,
-    })
+fn first_failure(part: &Part) -> Option<Issue> {
+    part.faces.iter().find_map(|face| face.failure().cloned())
 }
 
 /// True where a transform turns shapes inside out.
@@ -277,7 +268,7 @@ pub(crate) fn mirrors(by: &DAffine3) -> bool {
 
 /// The colour of sRGB components with a transparency.
 pub(crate) fn color(rgb: [f64; 3], transparency: f64) -> Color {
-    let [r, g, b] = rgb.map(crate::step::linear);
+    let [r, g, b] = rgb.map(crate::srgb::linear);
     Color([r, g, b, (1.0 - transparency).clamp(0.0, 1.0) as f32])
 }
 

@@ -6,7 +6,7 @@
 
 use super::graph::{Graph, Node, NodeIx, Prototype, Value};
 use super::lexer::{Lexer, Token};
-use chordal_brep::Source;
+use chordal_brep::{ReadIssue, Source};
 
 /// Nodes within nodes deeper than this are left out.
 const MAX_DEPTH: u32 = 400;
@@ -45,9 +45,7 @@ impl Parser<'_> {
             Token::Word(word) => found.extend(self.node(word)),
             Token::Sign(b'{') => {
                 let source = self.here();
-                self.graph
-                    .notes
-                    .warn(source, "a brace that belongs to no node; what it encloses is read as nodes");
+                self.graph.notes.warn(source, ReadIssue::StrayBytes);
             }
             _ => {}
         }
@@ -79,9 +77,7 @@ impl Parser<'_> {
                 let known = self.graph.names.get(&name).copied();
                 if known.is_none() {
                     let source = Source { entity: 0, line };
-                    self.graph
-                        .notes
-                        .lose(source, format!("USE {name}: no node of this name comes before; left out"));
+                    self.graph.notes.lose(source, ReadIssue::NameNotFound { what: "node", name });
                 }
                 known
             }
@@ -108,13 +104,13 @@ impl Parser<'_> {
     fn body(&mut self, kind: &str, name: String, line: u32) -> Option<NodeIx> {
         let source = Source { entity: 0, line };
         if !self.lexer.take(b'{') {
-            self.graph
-                .notes
-                .warn(source, format!("{kind} is no node and no statement that is known; skipped"));
+            self.graph.notes.warn(source, ReadIssue::Unsupported { what: kind.to_string().into() });
             return None;
         }
         if self.depth >= MAX_DEPTH {
-            self.graph.notes.lose(source, format!("{kind} lies deeper than {MAX_DEPTH} nodes; left out"));
+            self.graph
+                .notes
+                .lose(source, ReadIssue::Recursive { keyword: kind.to_string().into(), levels: MAX_DEPTH });
             self.skip_braces();
             return None;
         }
@@ -128,7 +124,7 @@ impl Parser<'_> {
             match self.lexer.next() {
                 Token::Sign(b'}') => break,
                 Token::End => {
-                    self.graph.notes.lose(source, format!("the file ends within this {kind}"));
+                    self.graph.notes.lose(source, ReadIssue::EntityTruncated);
                     break;
                 }
                 Token::Word(word) => self.member(word, &mut node),

@@ -2,9 +2,9 @@
 
 use super::document::{Bad, Doc, Ix, Res};
 use super::keyword::Kw;
-use super::number;
 use super::scan::string_end;
 use super::text;
+use crate::number;
 use chordal_brep::{ReadIssue, Real};
 use memchr::memmem;
 

@@ -6,7 +6,7 @@ use super::document::{Ix, Res};
 use super::faces::Trimmed;
 use super::keyword::Kw;
 use chordal_brep::{Coedge, Edge, EdgeId, Loop, Pcurve, ReadIssue, Source, VertexId};
-use chordal_nurbs::{CompositeSegment, Curve, Curve2, DVec2, DVec3, Range, Surface, UvBox};
+use chordal_nurbs::{Curve, Curve2, DVec2, Range, Surface, UvBox};
 use std::sync::Arc;
 
 /// Two points closer than this part of a surface patch's size are one corner.
@@ -134,7 +134,8 @@ impl Builder<'_> {
     fn curve_bounded(&mut self, ix: Ix) -> Res<Trimmed> {
         let mut args = self.doc.leaf(ix, Kw::CurveBoundedSurface)?;
         args.skip(1);
-        let surface = self.geometry.surface(args.reference()?)?;
+        let basis = args.reference()?;
+        let surface = self.geometry.surface(basis)?;
         let boundaries = args.references_strict()?;
         let natural_outer = args.logical(false);
         let mut loops = Vec::new();
@@ -146,70 +147,14 @@ impl Builder<'_> {
             loops = self.rectangle_loop(self.doc.source(ix), &surface, domain, true);
         }
         for boundary in boundaries {
-            let segments = self.geometry.composite_segments(boundary)?;
+            let pieces = self.geometry.composite_pieces(boundary)?;
             let outer = self.doc.kw(boundary) == Kw::OuterBoundaryCurve;
-            let coedges = self.boundary_coedges(boundary, segments)?;
+            let coedges = self.boundary_coedges(boundary, basis, pieces)?;
             loops.push(Loop::Edges { coedges, outer });
         }
         Ok(Trimmed { surface, same_sense: true, loops })
     }
-
-    /// A closed chain of curve pieces as edges of their own.
-    fn boundary_coedges(&mut self, ix: Ix, segments: Vec<CompositeSegment>) -> Res<Vec<Coedge>> {
-        let source = self.doc.source(ix);
-        let endless = |s: &CompositeSegment| {
-            let finite = s.start.is_finite() && s.end.is_finite() && s.start != s.end;
-            !finite || !s.curve.point(s.start).is_finite() || !s.curve.point(s.end).is_finite()
-        };
-        if segments.iter().any(endless) {
-            return Err(self.doc.bad(ix, ReadIssue::CurveUnbounded));
-        }
-        // Vertex i is where piece i ends and piece i + 1 starts; a piece that is a single point, at a pole, starts where it ends.
-        let points = single_points(&segments);
-        let mut joints: Vec<VertexId> =
-            segments.iter().map(|s| self.build.new_vertex(s.curve.point(s.end), source)).collect();
-        for i in (0..joints.len()).filter(|&i| points[i]) {
-            joints[i] = joints[(i + joints.len() - 1) % joints.len()];
-        }
-        let mut coedges = Vec::with_capacity(segments.len());
-        for (i, segment) in segments.into_iter().enumerate() {
-            let (before, after) = (joints[(i + joints.len() - 1) % joints.len()], joints[i]);
-            let forward = segment.start < segment.end;
-            let (range, start, end) = if forward {
-                (Range::new(segment.start, segment.end), before, after)
-            } else {
-                (Range::new(segment.end, segment.start), after, before)
-            };
-            let pcurves = match &segment.curve {
-                Curve::OnSurface { curve, .. } => vec![Pcurve { curve: Arc::new((**curve).clone()), range }],
-                _ => Vec::new(),
-            };
-            let curve = (!points[i]).then(|| Arc::new(segment.curve));
-            let edge = self.build.push_edge(Edge { curve, range, start, end, source });
-            coedges.push(Coedge { edge, forward, pcurves });
-        }
-        Ok(coedges)
-    }
 }
-
-/// Which pieces of a boundary stay in one place all along.
-fn single_points(segments: &[CompositeSegment]) -> Vec<bool> {
-    let samples = |s: &CompositeSegment| -> Vec<DVec3> {
-        (0..=PIECE_SAMPLES)
-            .map(|k| s.curve.point(s.start + (s.end - s.start) * f64::from(k) / f64::from(PIECE_SAMPLES)))
-            .collect()
-    };
-    let extent = |from: DVec3, points: &[DVec3]| points.iter().fold(0.0f64, |m, p| m.max(p.distance(from)));
-    let samples: Vec<Vec<DVec3>> = segments.iter().map(samples).collect();
-    let size = samples.iter().fold(0.0f64, |m, points| m.max(extent(samples[0][0], points)));
-    samples.iter().map(|points| extent(points[0], points) <= ONE_POINT * size && size > 0.0).collect()
-}
-
-/// Places along a piece of a boundary at which it is looked at.
-const PIECE_SAMPLES: u32 = 16;
-
-/// Points nearer than this share of a boundary's size are one.
-const ONE_POINT: f64 = 1e-7;
 
 /// A side as a coedge with its straight pcurve.
 fn coedge(edge: EdgeId, forward: bool, side: &Side) -> Coedge {

@@ -1,6 +1,7 @@
 //! Curves in space.
 
 use super::args::{Args, Kind};
+use super::boundary::Piece;
 use super::bspline::Knots;
 use super::document::{Ix, Res};
 use super::geometry::Geometry;
@@ -291,7 +292,7 @@ impl Geometry<'_> {
             return Ok(t);
         }
         match trim.point.map(|point| self.point(point)) {
-            Some(Ok(point)) => Ok(super::locate::parameter_of(curve, point)),
+            Some(Ok(point)) => Ok(crate::locate::parameter_of(curve, point)),
             Some(Err(bad)) => parameter.ok_or(bad),
             None => Err(self.doc.bad(ix, ReadIssue::TrimUnknown)),
         }
@@ -328,8 +329,13 @@ impl Geometry<'_> {
 
     /// The pieces of a composite curve, each with its bounds, in running order.
     pub(crate) fn composite_segments(&mut self, ix: Ix) -> Res<Vec<CompositeSegment>> {
+        Ok(self.composite_pieces(ix)?.into_iter().map(|piece| piece.segment).collect())
+    }
+
+    /// The pieces of a composite curve with the entities of their curves, in the order of the file.
+    pub(crate) fn composite_pieces(&mut self, ix: Ix) -> Res<Vec<Piece>> {
         let (_, mut args) = self.doc.body(ix, &CURVES)?;
-        let mut segments = Vec::new();
+        let mut pieces = Vec::new();
         for segment in args.references_strict()? {
             let mut args = self.doc.leaf(segment, Kw::CompositeCurveSegment)?;
             args.skip(1);
@@ -339,15 +345,21 @@ impl Geometry<'_> {
             let (start, end) =
                 if forward == same_sense { (range.start, range.end) } else { (range.end, range.start) };
             match curve {
-                Curve::Composite(inner) => append_composite(&mut segments, inner, start > end),
-                curve => segments.push(CompositeSegment { curve, start, end }),
+                Curve::Composite(inner) => {
+                    let mut segments = Vec::new();
+                    append_composite(&mut segments, inner, start > end);
+                    pieces.extend(segments.into_iter().map(|segment| Piece { segment, curve: None }));
+                }
+                curve => {
+                    let segment = CompositeSegment { curve, start, end };
+                    pieces.push(Piece { segment, curve: Some(parent) });
+                }
             }
         }
-        if segments.is_empty() {
-            Err(self.doc.bad(ix, ReadIssue::TooFew { what: "segments", found: 0, least: 1 }))
-        } else {
-            Ok(segments)
+        if pieces.is_empty() {
+            return Err(self.doc.bad(ix, ReadIssue::TooFew { what: "segments", found: 0, least: 1 }));
         }
+        Ok(pieces)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::builder::{Builder, KnownEdge};
 use super::document::{Ix, Res};
 use super::keyword::Kw;
-use super::locate::{self, Located, locate};
+use crate::locate::{self, Located, locate};
 use chordal_brep::{Edge, Issue, ReadIssue, Source, VertexId};
 use chordal_nurbs::{Curve, Range};
 use std::sync::Arc;

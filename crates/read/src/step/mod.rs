@@ -6,6 +6,7 @@
 
 mod args;
 mod bodies;
+mod boundary;
 mod bounded;
 mod bspline;
 mod builder;
@@ -18,14 +19,12 @@ mod faces;
 mod geometry;
 mod header;
 mod keyword;
-pub(crate) mod locate;
-pub(crate) mod number;
 mod pcurves;
 mod placement;
 mod products;
 mod representation;
 mod scan;
-pub(crate) mod styles;
+mod styles;
 mod surfaces;
 mod tessellated;
 mod text;
@@ -33,13 +32,12 @@ mod transforms;
 mod tree;
 mod units;
 
-use crate::ReadError;
-use chordal_brep::Model;
+use crate::{Format, ReadError};
+use chordal_brep::{Model, ReadIssue, Source};
 use document::Doc;
 use memchr::memmem;
 use products::Products;
 use styles::Styles;
-pub(crate) use styles::linear;
 use tree::Tree;
 
 /// The head of a file in which its format must show itself.
@@ -52,22 +50,28 @@ pub(crate) fn looks_like_step(bytes: &[u8]) -> bool {
         || (memmem::find(head, b"HEADER;").is_some() && memmem::find(head, b"FILE_SCHEMA").is_some())
 }
 
+/// A line of the file.
+fn at(line: u32) -> Source {
+    Source { entity: 0, line }
+}
+
 /// Reads a STEP file.
 pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     let doc = Doc::new(bytes);
-    let data = doc.data.ok_or_else(|| ReadError::NoData { name: name.to_owned(), line: doc.lines })?;
+    let data = doc.data.ok_or_else(|| {
+        ReadError::refused(Format::Step, at(doc.lines), ReadIssue::SectionMissing { section: "DATA" })
+    })?;
     if doc.entries.is_empty() {
-        return Err(ReadError::NoEntities { name: name.to_owned(), line: doc.lines });
+        let none = ReadIssue::TooFew { what: "entities in the DATA section", found: 0, least: 1 };
+        return Err(ReadError::refused(Format::Step, at(doc.lines), none));
     }
     let styles = Styles::read(&doc);
     let products = Products::read(&doc);
     let mut tree = Tree::new(&doc, &styles, &products);
     tree.unfold();
     if tree.parts.is_empty() {
-        let problem = tree
-            .first_problem()
-            .map_or_else(|| "no representation lists one".to_owned(), |issue| issue.to_string());
-        return Err(ReadError::NothingInIt { name: name.to_owned(), entities: doc.entries.len(), problem });
+        let cause = tree.first_problem();
+        return Err(ReadError::nothing(Format::Step, doc.entries.len(), cause));
     }
     let Tree { parts, nodes, roots, unit, .. } = tree;
     Ok(Model {

@@ -5,6 +5,7 @@
 use super::args::{Args, Kind};
 use super::document::{Doc, Ix};
 use super::keyword::Kw;
+use crate::srgb::linear;
 use chordal_brep::Color;
 use rustc_hash::FxHashMap;
 
@@ -178,24 +179,5 @@ fn rgb(doc: &Doc<'_>, ix: Ix) -> Option<[f64; 3]> {
             }
         }
         _ => None,
-    }
-}
-
-/// The sRGB transfer function, undone.
-pub(crate) fn linear(value: f64) -> f32 {
-    let value = value.clamp(0.0, 1.0);
-    (if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }) as f32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::linear;
-
-    #[test]
-    fn srgb_to_linear() {
-        assert_eq!(linear(0.0), 0.0);
-        assert_eq!(linear(1.0), 1.0);
-        assert!((linear(0.5) - 0.214_041_14).abs() < 1e-6);
-        assert_eq!(linear(7.0), 1.0);
     }
 }

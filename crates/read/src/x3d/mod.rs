@@ -13,7 +13,7 @@ mod xml;
 
 use crate::scene::stage::Stage;
 use crate::scene::{prototypes, text};
-use crate::{ReadError, ReadOptions};
+use crate::{Format, ReadError, ReadOptions};
 use chordal_brep::Model;
 use memchr::memmem;
 
@@ -51,7 +51,7 @@ pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Mo
     let mut stage = Stage::new(bytes.len());
     walk::walk(&graph, &mut stage);
     let millimetres = graph.millimetres.unwrap_or(1000.0);
-    stage.finish(&mut graph, name, schema, &unit_name(millimetres), millimetres)
+    stage.finish(Format::X3d, &mut graph, name, schema, &unit_name(millimetres), millimetres)
 }
 
 fn unit_name(millimetres: f64) -> String {

@@ -4,6 +4,7 @@ use super::walk::{Place, Walk};
 use crate::scene::graph::{Node, NodeIx};
 use crate::scene::polygons;
 use crate::scene::primitives::{self, Faces};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::DVec3;
 
 pub(super) fn is_one(kind: &str) -> bool {
@@ -37,7 +38,7 @@ pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) -> bool {
         kind if is_polygons(kind) => polygons_of(walk, ix, place),
         "ElevationGrid" => elevation_grid(walk, node, place),
         "Extrusion" => {
-            walk.stage.notes.lose(node.source(), "Extrusion: swept polygons are not read; left out")
+            walk.stage.notes.lose(node.source(), ReadIssue::Unsupported { what: "Extrusion".into() })
         }
         _ => return false,
     }
@@ -58,7 +59,10 @@ fn solid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
         _ => [node.number("bottomRadius", 1.0), node.number("height", 2.0), 1.0],
     };
     if !sizes.iter().all(|&s| s > 0.0) {
-        return walk.stage.notes.lose(node.source(), format!("{}: it has no size; left out", node.kind));
+        return walk.stage.notes.lose(
+            node.source(),
+            ReadIssue::InNode { node: node.kind.clone(), cause: ReadIssue::Empty.boxed() },
+        );
     }
     let [a, b, _] = sizes;
     walk.stage.solid(&place.transform, &look, |part, look| match node.kind.as_str() {
@@ -95,7 +99,8 @@ fn polygons_of(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) {
         _ => runs(&points, &counted(&node.numbers("fanCount"), points.len()), polygons::fan),
     };
     if lost > 0 {
-        let message = format!("{}: {lost} polygons without three corners of the list; left out", node.kind);
+        let cause = ReadIssue::PolygonsLost { polygons: lost }.boxed();
+        let message = ReadIssue::InNode { node: node.kind.clone(), cause };
         walk.stage.notes.lose(node.source(), message);
     }
     walk.stage.triangles(points, triangles, &place.transform, &place.look(node));
@@ -138,7 +143,14 @@ fn elevation_grid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
     let (columns, rows) = (node.count("xDimension", 0), node.count("zDimension", 0));
     let fits = columns.checked_mul(rows).is_some_and(|n| n <= heights.len());
     if !fits || columns < 2 || rows < 2 {
-        return walk.stage.notes.lose(node.source(), "ElevationGrid: it has too few heights; left out");
+        return walk.stage.notes.lose(
+            node.source(),
+            ReadIssue::TooFew {
+                what: "heights of the ElevationGrid",
+                found: node.numbers("height").len(),
+                least: columns.saturating_mul(rows),
+            },
+        );
     }
     if !walk.stage.afford(columns * rows, node.source()) {
         return;

@@ -7,6 +7,7 @@ use super::walk::{Place, Walk};
 use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::nurbs::{self, Net};
 use crate::trimmed::{Piece, Role, TrimLoop};
+use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4, NurbsSurface};
 
 const COORDINATES: &[&str] = &["Coordinate", "CoordinateDouble"];
@@ -39,16 +40,18 @@ pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) -> bool {
         ("NurbsSweptSurface", _) => swept::swept(graph, ix, &mut notes),
         ("NurbsSwungSurface", _) => swept::swung(graph, ix, &mut notes),
         (_, Some(basis)) => patch(graph, basis, &mut notes),
-        (_, None) => Err("it has no surface".to_owned()),
+        (_, None) => Err(ReadIssue::NoSurface),
     };
     let trims = trims(graph, ix, &mut notes);
     for note in notes {
-        walk.stage.notes.warn(node.source(), format!("{}: {note}", node.kind));
+        walk.stage
+            .notes
+            .warn(node.source(), ReadIssue::InNode { node: node.kind.clone(), cause: note.boxed() });
     }
     match (made, trims) {
         (Ok(surface), Ok(trims)) => walk.stage.surface(&surface, &trims, &place.transform, &look),
         (Err(reason), _) | (_, Err(reason)) => {
-            walk.stage.failed(format!("{}: {reason}", node.kind).into(), &look);
+            walk.stage.failed(ReadIssue::InNode { node: node.kind.clone(), cause: reason.boxed() }, &look);
         }
     }
     true
@@ -69,7 +72,7 @@ pub(super) fn points(graph: &Graph, ix: NodeIx) -> Vec<DVec3> {
     numbers.chunks_exact(3).map(DVec3::from_slice).collect()
 }
 
-fn patch(graph: &Graph, ix: NodeIx, notes: &mut Vec<String>) -> Result<NurbsSurface, String> {
+fn patch(graph: &Graph, ix: NodeIx, notes: &mut Vec<ReadIssue>) -> Result<NurbsSurface, ReadIssue> {
     let node = graph.node(ix);
     let points = points(graph, ix);
     let weights = weights(node, points.len(), notes);
@@ -87,16 +90,16 @@ fn patch(graph: &Graph, ix: NodeIx, notes: &mut Vec<String>) -> Result<NurbsSurf
 }
 
 /// The weights of a node, if there is one for each point.
-pub(super) fn weights(node: &Node, points: usize, notes: &mut Vec<String>) -> Vec<f64> {
+pub(super) fn weights(node: &Node, points: usize, notes: &mut Vec<ReadIssue>) -> Vec<f64> {
     let weights = node.numbers("weight").into_owned();
     if !weights.is_empty() && weights.len() != points {
-        notes.push(format!("{} weights for {points} control points; left out", weights.len()));
+        notes.push(ReadIssue::WeightsIgnored { found: weights.len(), expected: points });
         return Vec::new();
     }
     weights
 }
 
-fn trims(graph: &Graph, ix: NodeIx, notes: &mut Vec<String>) -> Result<Vec<TrimLoop>, String> {
+fn trims(graph: &Graph, ix: NodeIx, notes: &mut Vec<ReadIssue>) -> Result<Vec<TrimLoop>, ReadIssue> {
     let node = graph.node(ix);
     let contours = node.nodes("trimmingContour").iter().chain(&node.children);
     let contours = contours.filter(|&&child| graph.node(child).kind == "Contour2D");
@@ -107,8 +110,11 @@ fn trims(graph: &Graph, ix: NodeIx, notes: &mut Vec<String>) -> Result<Vec<TrimL
         for &child in contour.nodes("children").iter().chain(&contour.children) {
             let curve = graph.node(child);
             if let Some(made) = curve2(curve, notes) {
-                let made =
-                    made.map_err(|e| format!("its trim, the {} of {}: {e}", curve.kind, curve.source()))?;
+                let made = made.map_err(|e| ReadIssue::Trim {
+                    node: curve.kind.clone(),
+                    line: curve.source().line,
+                    cause: e.boxed(),
+                })?;
                 pieces.push(Piece::whole(made));
             }
         }
@@ -118,7 +124,7 @@ fn trims(graph: &Graph, ix: NodeIx, notes: &mut Vec<String>) -> Result<Vec<TrimL
 }
 
 /// A curve of parameter space; `None` for other nodes.
-pub(super) fn curve2(node: &Node, notes: &mut Vec<String>) -> Option<Result<Curve2, String>> {
+pub(super) fn curve2(node: &Node, notes: &mut Vec<ReadIssue>) -> Option<Result<Curve2, ReadIssue>> {
     match node.kind.as_str() {
         "NurbsCurve2D" => {
             let points = node.numbers("controlPoint");
@@ -138,7 +144,7 @@ pub(super) fn curve2(node: &Node, notes: &mut Vec<String>) -> Option<Result<Curv
             Some(if sound {
                 Ok(Curve2::Polyline(points))
             } else {
-                Err("it has fewer than two points".to_owned())
+                Err(ReadIssue::TooFew { what: "points", found: 0, least: 2 })
             })
         }
         _ => None,
@@ -146,7 +152,7 @@ pub(super) fn curve2(node: &Node, notes: &mut Vec<String>) -> Option<Result<Curv
 }
 
 /// The control points of a NurbsCurve as (wx, wy, wz, w).
-pub(super) fn curve3(graph: &Graph, ix: NodeIx, notes: &mut Vec<String>) -> Vec<DVec4> {
+pub(super) fn curve3(graph: &Graph, ix: NodeIx, notes: &mut Vec<ReadIssue>) -> Vec<DVec4> {
     let points = points(graph, ix);
     let weights = weights(graph.node(ix), points.len(), notes);
     nurbs::weighted(&points, &weights)

@@ -1,4 +1,4 @@
-use crate::read_bytes;
+use crate::testing::read_bytes;
 use chordal_brep::{FaceGeometry, Loop, Model};
 use chordal_nurbs::{DVec2, DVec3, Surface};
 

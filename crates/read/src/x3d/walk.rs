@@ -5,7 +5,7 @@ use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::matrix;
 use crate::scene::stage::{self, Placed, Stage};
 use crate::trimmed::Look;
-use chordal_brep::{Color, LooseKind};
+use chordal_brep::{Color, LooseKind, ReadIssue};
 use chordal_nurbs::DAffine3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -85,10 +85,7 @@ impl<'a> Walk<'a> {
             return;
         }
         if std::mem::replace(&mut self.active[ix as usize], true) {
-            return self
-                .stage
-                .notes
-                .lose(node.source(), format!("{} is used inside itself; left out there", node.kind));
+            return self.stage.notes.lose(node.source(), ReadIssue::UsedInItself { node: node.kind.clone() });
         }
         self.depth += 1;
         let name = if node.name.is_empty() { place.name } else { &node.name };
@@ -128,14 +125,11 @@ impl<'a> Walk<'a> {
             "LOD" => {
                 let levels = children(node, &["level", "children"]);
                 if levels.len() > 1 {
-                    self.note(node, "only the first level of detail is read");
+                    self.note(node, ReadIssue::FirstLevelOnly);
                 }
                 levels.first().inspect(|&&level| self.node(level, place));
             }
-            "Inline" => self
-                .stage
-                .notes
-                .lose(node.source(), format!("Inline {} is not followed", node.word("url")).as_str()),
+            "Inline" => self.stage.notes.lose(node.source(), ReadIssue::OtherFile),
             kind if GROUPS.contains(&kind) => {
                 let moves = matches!(kind, "Transform" | "CADPart" | "EspduTransform");
                 let by = if moves {
@@ -149,22 +143,16 @@ impl<'a> Walk<'a> {
                 }
             }
             "CoordinateDeformer" => {
-                self.stage.notes.lose(
-                    node.source(),
-                    "CoordinateDeformer: shapes bent by a volume are not read; left out",
-                );
+                self.stage
+                    .notes
+                    .lose(node.source(), ReadIssue::Unsupported { what: "CoordinateDeformer".into() });
             }
             "NurbsSet" => {}
             _ if self.geometry(ix, place) => {}
             kind if graph.prototypes.get(kind).is_some_and(|p| p.external) => {
-                self.stage.notes.lose(
-                    node.source(),
-                    format!("{kind} is a prototype of another file, which is not followed"),
-                );
+                self.stage.notes.lose(node.source(), ReadIssue::OtherFile);
             }
-            kind if !kind.is_empty() && !is_silent(kind) => {
-                self.note(node, "a node that is not read; left out")
-            }
+            kind if !kind.is_empty() && !is_silent(kind) => self.note(node, ReadIssue::NotRead),
             _ => {}
         }
     }
@@ -175,7 +163,7 @@ impl<'a> Walk<'a> {
         if which >= 0.0 {
             choices.get(which as usize).inspect(|&&choice| self.node(choice, place));
         } else if !choices.is_empty() {
-            self.note(node, "no choice is switched on; its children are left out");
+            self.note(node, ReadIssue::NoChoice);
         }
     }
 
@@ -207,16 +195,18 @@ impl<'a> Walk<'a> {
                 self.stage.loose(LooseKind::Wire, place.name, node.source());
             }
             "PointSet" | "Polypoint2D" => self.stage.loose(LooseKind::Point, place.name, node.source()),
-            "Text" => self.note(node, "text has no surfaces here"),
+            "Text" => self.note(node, ReadIssue::Unsupported { what: "text".into() }),
             _ => return surfaces::read(self, ix, place) || shapes::read(self, ix, place),
         }
         true
     }
 
     /// Says something once for each kind of node.
-    pub(super) fn note(&mut self, node: &Node, what: &str) {
+    pub(super) fn note(&mut self, node: &Node, what: ReadIssue) {
         if self.noted.insert(node.kind.clone()) {
-            self.stage.notes.warn(node.source(), format!("{}: {what}", node.kind));
+            self.stage
+                .notes
+                .warn(node.source(), ReadIssue::InNode { node: node.kind.clone(), cause: what.boxed() });
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The XML encoding of X3D: elements are nodes, attributes fields.
 
 use crate::scene::graph::{Graph, Node, NodeIx, Prototype, Value};
-use chordal_brep::Source;
+use chordal_brep::{ReadIssue, Source};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -27,7 +27,7 @@ pub(super) fn parse(bytes: &[u8]) -> (Graph, String) {
                     let source = parser.here();
                     parser.graph.notes.lose(
                         source,
-                        format!("elements lie deeper than {MAX_DEPTH}; what comes after is left out"),
+                        ReadIssue::Recursive { keyword: "XML".into(), levels: MAX_DEPTH as u32 },
                     );
                     break;
                 }
@@ -45,17 +45,14 @@ pub(super) fn parse(bytes: &[u8]) -> (Graph, String) {
             Ok(Event::Eof) => {
                 if !parser.open.is_empty() {
                     let source = parser.here();
-                    parser.graph.notes.lose(source, "the file ends within its elements");
+                    parser.graph.notes.lose(source, ReadIssue::FileTruncated);
                 }
                 break;
             }
             Ok(_) => {}
             Err(error) => {
                 let source = parser.here();
-                parser
-                    .graph
-                    .notes
-                    .lose(source, format!("no XML from here on ({error}); what comes after is left out"));
+                parser.graph.notes.lose(source, ReadIssue::TextBroken { reason: error.to_string() });
                 break;
             }
         }
@@ -166,9 +163,7 @@ impl Parser {
                 Some(ix) => self.attach(ix, &container),
                 None => {
                     let source = self.here();
-                    self.graph
-                        .notes
-                        .lose(source, format!("USE {name}: no node of this name comes before; left out"));
+                    self.graph.notes.lose(source, ReadIssue::NameNotFound { what: "node", name });
                 }
             }
             return Open::Ignored;
