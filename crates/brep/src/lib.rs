@@ -4,6 +4,8 @@
 //! Geometry of a part stays in the units of its file; every placement carries the scale to its parent, and the
 //! root nodes carry the scale to millimetres. So a walk down the tree ends in millimetres, whatever units are mixed.
 
+#![deny(missing_docs)]
+
 mod assembly;
 mod ids;
 pub mod issue;

@@ -11,7 +11,9 @@ pub struct Color(pub [f32; 4]);
 /// A corner shared by edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vertex {
+    /// In the coordinates and unit of the part.
     pub point: DVec3,
+    /// The entity of the vertex.
     pub source: Source,
 }
 
@@ -23,15 +25,20 @@ pub struct Vertex {
 pub struct Edge {
     /// `None`: the edge is a single point (a pole, an apex).
     pub curve: Option<Arc<Curve>>,
+    /// The part of the curve that the edge is.
     pub range: Range,
+    /// The vertex at `range.start`.
     pub start: VertexId,
+    /// The vertex at `range.end`.
     pub end: VertexId,
+    /// The entity of the edge.
     pub source: Source,
 }
 
 /// One use of an edge by a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coedge {
+    /// The edge that is used.
     pub edge: EdgeId,
     /// True where the loop runs along the edge from its start to its end.
     pub forward: bool,
@@ -43,7 +50,9 @@ pub struct Coedge {
 /// A curve in parameter space with the range that corresponds to the edge's range, start to start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pcurve {
+    /// The curve in the parameter space of the face's surface.
     pub curve: Arc<Curve2>,
+    /// The part of it that corresponds to the edge's range, start to start.
     pub range: Range,
 }
 
@@ -51,16 +60,27 @@ pub struct Pcurve {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Loop {
     /// In the order and direction of the file, orientation flags of the bound already applied.
-    Edges { coedges: Vec<Coedge>, outer: bool },
+    Edges {
+        /// The uses of edges, each starting where the one before ends.
+        coedges: Vec<Coedge>,
+        /// The file says that it is the face's outer boundary.
+        outer: bool,
+    },
     /// The loop is one point (VERTEX_LOOP): it cuts nothing off.
     Vertex(VertexId),
     /// A polygon of points without edges (POLY_LOOP), each a vertex of the part.
-    Polygon { vertices: Vec<VertexId>, outer: bool },
+    Polygon {
+        /// The corners in order, the first not repeated at the end.
+        vertices: Vec<VertexId>,
+        /// The file says that it is the face's outer boundary.
+        outer: bool,
+    },
 }
 
 /// The surface of a face, or why it has none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FaceGeometry {
+    /// The surface on which the face lies.
     Surface(Arc<Surface>),
     /// The face cannot be used; it stays in the model and is reported with this reason.
     Failed(Issue),
@@ -69,6 +89,7 @@ pub enum FaceGeometry {
 /// A bounded piece of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
+    /// The surface, or why the face has none.
     pub geometry: FaceGeometry,
     /// The face's normal is the surface's. Loops run with material on their left seen against the **face's** normal.
     pub same_sense: bool,
@@ -76,9 +97,13 @@ pub struct Face {
     pub flipped: bool,
     /// Empty: the whole surface.
     pub loops: Vec<Loop>,
+    /// The name in the file; may be empty.
     pub name: String,
+    /// The face's own colour.
     pub color: Option<Color>,
+    /// The layer in the file.
     pub layer: Option<String>,
+    /// The entity of the face.
     pub source: Source,
 }
 
@@ -108,9 +133,11 @@ impl Face {
 /// Faces joined along edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shell {
+    /// The faces, each once.
     pub faces: Vec<FaceId>,
     /// The file says that it bounds a volume.
     pub closed: bool,
+    /// The entity of the shell.
     pub source: Source,
 }
 
@@ -128,54 +155,80 @@ pub enum BodyKind {
 /// A named, coloured group of shells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
+    /// What the body is.
     pub kind: BodyKind,
+    /// Of a solid the outer shell first, then its voids.
     pub shells: Vec<ShellId>,
+    /// The name in the file; may be empty.
     pub name: String,
+    /// The colour of faces without their own.
     pub color: Option<Color>,
+    /// The layer in the file.
     pub layer: Option<String>,
+    /// The entity of the body.
     pub source: Source,
 }
 
 /// What a loose item is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LooseKind {
+    /// A curve.
     Wire,
+    /// A point.
     Point,
 }
 
 /// A curve or point of the file that belongs to no face: it has no triangles and is reported.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LooseItem {
+    /// What it is.
     pub kind: LooseKind,
+    /// The name in the file; may be empty.
     pub name: String,
+    /// The entity of the item.
     pub source: Source,
 }
 
 /// Triangles that were in the file already: passed through, nothing is proven about them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TessellatedItem {
+    /// The name in the file; may be empty.
     pub name: String,
+    /// The corners, in the coordinates and unit of the part.
     pub points: Vec<DVec3>,
+    /// Three positions in `points` each, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// One per point, or empty.
     pub normals: Vec<DVec3>,
+    /// The colour of the item.
     pub color: Option<Color>,
+    /// The entity of the item.
     pub source: Source,
 }
 
 /// One part, meshed once however often it is placed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
+    /// The name in the file; may be empty.
     pub name: String,
+    /// Corners; [`VertexId`] is the position.
     pub vertices: Vec<Vertex>,
+    /// Edges, each once however many faces use it; [`EdgeId`] is the position.
     pub edges: Vec<Edge>,
+    /// Faces, the failed ones with their reasons; [`FaceId`] is the position.
     pub faces: Vec<Face>,
+    /// Shells; [`ShellId`] is the position.
     pub shells: Vec<Shell>,
+    /// Bodies; [`crate::BodyId`] is the position.
     pub bodies: Vec<Body>,
+    /// Curves and points that belong to no face.
     pub loose: Vec<LooseItem>,
+    /// Triangles that the file holds already.
     pub tessellated: Vec<TessellatedItem>,
+    /// The colour of faces and bodies without their own.
     pub color: Option<Color>,
     /// The file's own statement of accuracy, in the part's units (UNCERTAINTY_MEASURE), where it makes one.
     pub uncertainty: Option<f64>,
+    /// The entity of the part.
     pub source: Source,
 }

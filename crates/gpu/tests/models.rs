@@ -129,7 +129,7 @@ fn surfaces_and_curves_of_models_keep_the_bound() {
     let next = std::sync::atomic::AtomicUsize::new(0);
     let totals = std::sync::Mutex::new(([0; 3], 0.0_f64));
     let check = |path: &Path| {
-        let Ok(model) = chordal_read::read_file(path) else { return };
+        let Ok(model) = chordal_read::read_file(path, &chordal_read::ReadOptions::default()) else { return };
         let found = geometry_of(&model);
         let mut set = SurfaceSet::<f32>::with_bezier();
         for surface in &found.surfaces {

@@ -31,7 +31,8 @@ pub fn meshed(name: &str, percent: f64) -> Meshed {
 
 /// Any model file, meshed the same way.
 pub fn meshed_file(path: &Path, percent: f64) -> Meshed {
-    let model = chordal_read::read_file(path).expect("the model can be read");
+    let model =
+        chordal_read::read_file(path, &chordal_read::ReadOptions::default()).expect("the model can be read");
     // A coarse mesh first: the box of its vertices is what the percentage refers to.
     let reach = model.parts.iter().flat_map(|p| &p.vertices).map(|v| v.point.abs().max_element());
     let reach = reach.fold(0.0, f64::max);
