@@ -446,6 +446,31 @@ def no_length(rng: random.Random | None) -> Model:
     return "", a * b, write
 
 
+def huge(rng: random.Random | None) -> Model:
+    """A small rectangle of parameters of a surface with a huge radius, near the origin."""
+    r = 10 ** rng.uniform(3, 10) if rng else 1e10
+    width = 20 / r
+    kind = rng.randrange(3) if rng else 1
+    ring, v = [(cylinder(r), (0.0, 10.0)), (sphere(r), (0.0, width / 2)), (torus(r, 5.0), (0.0, 1.5))][kind]
+    u = (0.3, 0.3 + width)
+    area = width * (ring.area(v[1]) - ring.area(v[0]))
+
+    def write(path: Path) -> None:
+        s = Step(path.stem)
+        f = turned(rng)
+        far = ring.point(f, 0.3, v[0])
+        f = Frame([o - p for o, p in zip(f.o, far)], f.x, f.y, f.z)
+        sides = [
+            parallel(s, f, ring, v[0], u[0], u[1]),
+            meridian(s, f, ring, u[1], v[0], v[1]),
+            parallel(s, f, ring, v[1], u[1], u[0]),
+            meridian(s, f, ring, u[0], v[1], v[0]),
+        ]
+        write_sheet(s, [s.face([s.bound(s.loop(sides), outer=True)], ring.surface(s, f))], path)
+
+    return "", area, write
+
+
 def no_radius(rng: random.Random | None) -> Model:
     """A disc, and beside it a cylinder without a radius between two circles without one."""
     r = rng.uniform(2, 20) if rng else 8.0
@@ -514,6 +539,7 @@ KINDS: dict[str, tuple[str, Callable[[random.Random | None], Model]]] = {
     "torus_blocked": ("a whole torus with windows in the way of every straight cut", ring_blocked),
     "sliver_on_edge": ("a box with a face of no area between two edges that coincide", sliver),
     "edge_folded": ("a closed edge that returns on its own way", folded_edge),
+    "sphere_huge": ("a small patch of a sphere with a radius of 1e10 mm", huge),
     "cylinder_without_radius": ("a cylinder with a radius of zero", no_radius),
     "edge_without_length": ("an edge of no length and one that runs back over its neighbour", no_length),
 }

@@ -33,6 +33,12 @@ pub(crate) fn locate(
     located.filter(|l| l.range.is_finite() && l.range.start < l.range.end)
 }
 
+/// Vertices nearer together than this part of their coordinates are the same place.
+const SAME_PLACE: f64 = 1e-9;
+
+/// Places on a curve are rounded to this part of its size.
+const ROUNDING: f64 = 1e-13;
+
 fn on_closed(
     curve: &Curve,
     period: f64,
@@ -56,7 +62,12 @@ fn on_closed(
         return located(Range::new(t0, t0 + period));
     }
     let mut t1 = if snap && at_seam[1] { domain.end } else { parameter_of(curve, last) };
-    if near(t1, domain.start) {
+    // An end beside the start of a whole turn, unless the two vertices are clearly apart: on a circle of a huge radius a
+    // short arc is a tiny part of the turn.
+    let apart = first.distance(last);
+    let same_place = SAME_PLACE * (first.length() + last.length());
+    let is_short_arc = t1 > t0 && apart > same_place.max(ROUNDING * size(curve));
+    if near(t1, domain.start) && !is_short_arc {
         t1 = domain.end;
     }
     if !(t1 > t0 && t1 <= t0 + period) {
