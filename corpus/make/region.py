@@ -18,7 +18,7 @@ from pathlib import Path
 
 from brep_text import Brep
 from iges_text import Iges
-from part21 import Point, Step, Use, cross, unit, write_sheet, write_solid
+from part21 import Point, Step, Use, cross, flag, refs, unit, write_sheet, write_solid
 
 FOLDER = Path(__file__).resolve().parent.parent / "region"
 TAU = 2 * math.pi
@@ -471,6 +471,36 @@ def huge(rng: random.Random | None) -> Model:
     return "", area, write
 
 
+def scattered(rng: random.Random | None) -> Model:
+    """Half a cylinder as a CURVE_BOUNDED_SURFACE; its four pieces come in any order and direction."""
+    r, h = (rng.uniform(2, 20), rng.uniform(2, 20)) if rng else (5.0, 20.0)
+    order = rng.sample(range(4), 4) if rng else [2, 0, 3, 1]
+    backwards = [rng.random() < 0.5 for _ in range(4)] if rng else [True, False, False, True]
+
+    def write(path: Path) -> None:
+        s = Step(path.stem)
+        f = turned(rng)
+        corners = [f.at(r, 0, 0), f.at(-r, 0, 0), f.at(-r, 0, h), f.at(r, 0, h)]
+        arcs = [s.circle(f.at(0, 0, z), f.z, f.x, r) for z in (0, h)]
+        curves = [arcs[0], s.line(corners[1], corners[2]), arcs[1], s.line(corners[0], corners[3])]
+        # From where to where each curve runs in its own direction.
+        ends = [(0, 1), (1, 2), (3, 2), (0, 3)]
+        segments = []
+        for k in order:
+            a, b = (s.point(corners[i]) for i in ends[k])
+            piece = s.add(f"TRIMMED_CURVE('',{curves[k]},({a}),({b}),.T.,.CARTESIAN.)")
+            sense = flag(not backwards[k])
+            segments.append(s.add(f"COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,{sense},{piece})"))
+        surface = s.elementary("CYLINDRICAL_SURFACE", f.o, f.z, f.x, r)
+        border = s.add(f"OUTER_BOUNDARY_CURVE('',{refs(segments)},.F.)")
+        bounded = s.add(f"CURVE_BOUNDED_SURFACE('',{surface},({border}),.F.)")
+        items = [s.axes(), s.add(f"GEOMETRIC_SET('',({bounded}))")]
+        s.part(items, "GEOMETRICALLY_BOUNDED_SURFACE_SHAPE_REPRESENTATION")
+        s.write(path)
+
+    return "", math.pi * r * h, write
+
+
 def no_radius(rng: random.Random | None) -> Model:
     """A disc, and beside it a cylinder without a radius between two circles without one."""
     r = rng.uniform(2, 20) if rng else 8.0
@@ -540,6 +570,7 @@ KINDS: dict[str, tuple[str, Callable[[random.Random | None], Model]]] = {
     "sliver_on_edge": ("a box with a face of no area between two edges that coincide", sliver),
     "edge_folded": ("a closed edge that returns on its own way", folded_edge),
     "sphere_huge": ("a small patch of a sphere with a radius of 1e10 mm", huge),
+    "curve_bounded_scattered": ("CURVE_BOUNDED_SURFACE with pieces in any order", scattered),
     "cylinder_without_radius": ("a cylinder with a radius of zero", no_radius),
     "edge_without_length": ("an edge of no length and one that runs back over its neighbour", no_length),
 }
