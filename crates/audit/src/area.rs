@@ -1,24 +1,26 @@
 //! The area of a face in its parameter space, from its exact loops, against that of its triangles.
 //!
-//! The loops are followed along the exact curves of their edges: from one place of the mesh on, each next point of a
-//! curve is projected onto the surface near the one before, so that closed directions unroll by themselves. Nothing
-//! of the mesher's chart is used but that first place. By Green's theorem the area is then a sum of line integrals:
+//! The loops are followed along the exact curves of their edges: from one place of the mesh on, each next
+//! point of a curve is projected onto the surface near the one before, so that closed directions unroll by
+//! themselves. Nothing of the mesher's chart is used but that first place. By Green's theorem the area is
+//! then a sum of line integrals:
 //!
 //! ```text
 //!   loops that wind round u            loops that wind round v        neither
 //!   A = −∮ (v − v₀) du                  A = ∮ (u − u₀) dv              A = ½ ∮ (u dv − v du)
 //! ```
 //!
-//! A loop may be found whole periods away from another: where both directions close, the area is known up to the area
-//! of the whole parameter space. If the loops together wind round u once more, a pole closes the face, and v₀ is its v:
-//! one of the poles that the surface has must fit. Where loops run the other way round than the triangles, as files
-//! have it, the sign changes.
+//! A loop may be found whole periods away from another: where both directions close, the area is known up to
+//! the area of the whole parameter space. If the loops together wind round u once more, a pole closes the
+//! face, and v₀ is its v: one of the poles that the surface has must fit. Where loops run the other way round
+//! than the triangles, as files have it, the sign changes.
 //!
-//! Compared is the polygon of the followed points at the vertices of the edges' polylines, which the triangles must
-//! fill exactly: to within what the edges lie off the surface, seen in the chart, along the perimeter, and a share.
+//! Compared is the polygon of the followed points at the vertices of the edges' polylines, which the
+//! triangles must fill exactly: to within what the edges lie off the surface, seen in the chart, along the
+//! perimeter, and a share.
 //!
-//! Not checked: faces with a loop through a pole, where a curve does not determine one of the parameters; loops that
-//! wind round both directions at once; curves whose projection does not follow them.
+//! Not checked: faces with a loop through a pole, where a curve does not determine one of the parameters;
+//! loops that wind round both directions at once; curves whose projection does not follow them.
 
 use crate::boundary::Boundary;
 use crate::chart::Chart;
@@ -86,8 +88,8 @@ impl Followed {
     }
 }
 
-/// The signed area of all triangles in the chart. A triangle with one corner at a pole stands for the sector between
-/// the parameter lines through its other corners; one with two stands for none (see [`crate::fan`]).
+/// The signed area of all triangles in the chart. A triangle with one corner at a pole stands for the sector
+/// between the parameter lines through its other corners; one with two stands for none (see [`crate::fan`]).
 fn mesh_area(chart: &Chart<'_>) -> f64 {
     let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
     let area = |t: &[u32; 3]| {
@@ -178,7 +180,8 @@ fn is_at_pole(chart: &Chart<'_>, context: &Context<'_>, position: u32) -> bool {
     chart.poles.iter().any(|pole| pole.point.distance(p) <= near)
 }
 
-/// The positions along a loop, and the middle of the exact curve between each and the next, where it is not straight.
+/// The positions along a loop, and the middle of the exact curve between each and the next, where it is not
+/// straight.
 fn points_of(context: &Context<'_>, a_loop: &Loop) -> Option<(Vec<u32>, Vec<Option<DVec3>>)> {
     let mut positions = Vec::new();
     let mut between = Vec::new();
@@ -265,8 +268,8 @@ impl Walk<'_, '_> {
         self.off.is_finite().then_some(uv)
     }
 
-    /// On a surface of circles about the frame's axis: `v` of the distance from the axis and the height, and at v the
-    /// radius of the circle and the speed along v.
+    /// On a surface of circles about the frame's axis: `v` of the distance from the axis and the height, and
+    /// at v the radius of the circle and the speed along v.
     fn ring(
         &self,
         frame: &Frame,

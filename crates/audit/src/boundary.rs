@@ -1,8 +1,8 @@
 //! The boundary of a face: exactly the chords of its loops' edges, and cuts whose two sides fit.
 //!
-//! With every triangle turned the same way in the chart and the boundary being the loops (and cuts along which the
-//! surface is glued to itself), the triangles cover the face, and nothing else, once. A hole that was filled lacks its chords; a region
-//! that is missing ends where the face has no edge.
+//! With every triangle turned the same way in the chart and the boundary being the loops (and cuts along
+//! which the surface is glued to itself), the triangles cover the face, and nothing else, once. A hole that
+//! was filled lacks its chords; a region that is missing ends where the face has no edge.
 
 use crate::context::Context;
 use crate::halves::Half;
@@ -17,8 +17,8 @@ pub(crate) struct Boundary {
     /// Loops that run as the file says, and the other way round.
     pub forward: usize,
     pub backward: usize,
-    /// Of each loop, whether the triangles along it run as the file says; `None` where they do not run along all of
-    /// it.
+    /// Of each loop, whether the triangles along it run as the file says; `None` where they do not run along
+    /// all of it.
     pub directions: Vec<Option<bool>>,
     /// The two sides of a cut that only this face knows.
     pub cuts: Vec<[Half; 2]>,
@@ -108,7 +108,8 @@ impl Pool {
     }
 }
 
-/// Books the chords of one loop. Files give loops the wrong way round; a loop must only run one way as a whole.
+/// Books the chords of one loop. Files give loops the wrong way round; a loop must only run one way as a
+/// whole.
 fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) -> Option<bool> {
     let (taken, missing) = pool.take_all(&chords);
     if missing.is_empty() {

@@ -1,4 +1,5 @@
-//! A tree of boxes, split at the median of their centres: pairs of boxes that meet, without looking at all pairs.
+//! A tree of boxes, split at the median of their centres: pairs of boxes that meet, without looking at all
+//! pairs.
 
 use chordal_nurbs::Box3;
 

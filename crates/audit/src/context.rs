@@ -27,8 +27,8 @@ impl Context<'_> {
         CHARGED * self.options.tolerance + self.options.coordinate_rounding
     }
 
-    /// Bounds of a facet that need not be tightened further: a little under the tolerance, and the claimed error of
-    /// the face.
+    /// Bounds of a facet that need not be tightened further: a little under the tolerance, and the claimed
+    /// error of the face.
     pub fn enough(&self, face: usize) -> (f64, f64) {
         let tolerance = self.options.tolerance;
         let claimed = self.claim(face).map_or(tolerance, |c| c.proven_error);

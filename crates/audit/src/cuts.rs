@@ -1,10 +1,11 @@
 //! Cuts: where a face's triangles are glued to each other along a line that is no edge of the model.
 //!
-//! A seam's two sides lie whole periods apart in the chart: nothing is between them. Where triangles whose corners are not
-//! three vertices were left out, a sliver of surface between the two sides has a single mesh edge over it. At a pole
-//! the sectors of [`crate::fan`] cover it; elsewhere it needs a bound of its own: that of the vector error e = S − L against the
-//! affine map L of the sliver onto the edge (see `chordal_nurbs::facet_bound` for the formula along one direction), or, where
-//! the sides are a hair apart on either side of a crease, its width, beyond what bounds the triangles at its sides.
+//! A seam's two sides lie whole periods apart in the chart: nothing is between them. Where triangles whose
+//! corners are not three vertices were left out, a sliver of surface between the two sides has a single mesh
+//! edge over it. At a pole the sectors of [`crate::fan`] cover it; elsewhere it needs a bound of its own:
+//! that of the vector error e = S − L against the affine map L of the sliver onto the edge (see
+//! `chordal_nurbs::facet_bound` for the formula along one direction), or, where the sides are a hair apart on
+//! either side of a crease, its width, beyond what bounds the triangles at its sides.
 
 use crate::chart::Chart;
 use crate::halves::Half;
@@ -15,8 +16,8 @@ use chordal_nurbs::{DVec2, DVec3, Piece, Surface, SurfaceBounds, UvBox};
 pub(crate) enum Cut {
     /// Nothing: one side is the other moved by whole periods.
     Seam,
-    /// A sliver, whose distance from its edge is at most `alone`, zero where something else covers it; it is also at most
-    /// `width` wide.
+    /// A sliver, whose distance from its edge is at most `alone`, zero where something else covers it; it is
+    /// also at most `width` wide.
     Sliver { alone: f64, width: f64 },
 }
 
@@ -62,8 +63,8 @@ pub(crate) fn judge(
     Cut::Sliver { alone: error, width }
 }
 
-/// How far apart the two sides a–b and a2–b2 of a sliver are at most: ‖S(x + d) − S(x)‖ ≤ max ‖DS[d]‖ over the sliver's box, by
-/// the derivatives at one corner, the second ones over the box, and the jumps within.
+/// How far apart the two sides a–b and a2–b2 of a sliver are at most: ‖S(x + d) − S(x)‖ ≤ max ‖DS[d]‖ over
+/// the sliver's box, by the derivatives at one corner, the second ones over the box, and the jumps within.
 fn width(bounds: &SurfaceBounds<'_>, uv: [DVec2; 4], chart: &Chart<'_>, pieces: &mut Vec<Piece>) -> f64 {
     let [a, b, b2, a2] = uv;
     let uv_box = UvBox::from_points(uv);

@@ -1,7 +1,7 @@
 //! The largest distance of the points of one mesh from another, enclosed from both sides by branch and bound.
 //!
-//! The distance from one triangle t is a convex function, so over a convex piece it is largest at a corner. A piece of a
-//! triangle is therefore clipped to the prism over the nearest triangle t of the other mesh:
+//! The distance from one triangle t is a convex function, so over a convex piece it is largest at a corner. A
+//! piece of a triangle is therefore clipped to the prism over the nearest triangle t of the other mesh:
 //!
 //! ```text
 //!      ┌────┬───────┐      over t:      at most the distance of its corners from t: done, or cut in half
@@ -10,8 +10,8 @@
 //!      └────┴───────┘
 //! ```
 //!
-//! What is not farther than the largest distance seen so far, plus a precision, is done. Every cut either meets another
-//! triangle or halves a piece, and a piece as small as the precision is done, so it ends.
+//! What is not farther than the largest distance seen so far, plus a precision, is done. Every cut either
+//! meets another triangle or halves a piece, and a piece as small as the precision is done, so it ends.
 
 use crate::triangle_tree::{Nearest, TriangleTree, closest_point};
 use glam::DVec3;
@@ -31,8 +31,8 @@ pub struct Distance {
 /// Pieces into which one triangle is cut before its bound is taken as it is.
 const MOST_PIECES: usize = 100_000;
 
-/// The largest distance of any point of the triangles `from` from the nearest triangle of `to`, to within `precision`
-/// (or wider, where that takes too many pieces). Infinite where `to` is empty and `from` is not.
+/// The largest distance of any point of the triangles `from` from the nearest triangle of `to`, to within
+/// `precision` (or wider, where that takes too many pieces). Infinite where `to` is empty and `from` is not.
 pub fn largest_distance(from: &[[DVec3; 3]], to: &TriangleTree, precision: f64) -> Distance {
     let seen = from
         .par_iter()
@@ -50,7 +50,8 @@ pub fn largest_distance(from: &[[DVec3; 3]], to: &TriangleTree, precision: f64) 
     Distance { at_most: found.at_most.max(found.at_least), ..found }
 }
 
-/// Joins two enclosures; of equally far points the one that comes first in space, so that the order of work does not matter.
+/// Joins two enclosures; of equally far points the one that comes first in space, so that the order of work
+/// does not matter.
 fn farther(a: Distance, b: Distance) -> Distance {
     let order = a.at_least.total_cmp(&b.at_least).then_with(|| {
         let first = |p: DVec3, q: DVec3| (0..3).map(|i| q[i].total_cmp(&p[i])).find(|o| o.is_ne());

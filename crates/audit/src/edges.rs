@@ -1,7 +1,7 @@
 //! Edges: every polyline runs along its curve, in order, without a sample left out.
 //!
-//! The parameter of each sample is found again from its position, so that the bound of each chord rests on nothing that
-//! the mesher said.
+//! The parameter of each sample is found again from its position, so that the bound of each chord rests on
+//! nothing that the mesher said.
 
 use crate::precision::{ROUNDING, curve_magnitude};
 use crate::report::{Problem, Subject};

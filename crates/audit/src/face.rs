@@ -143,8 +143,8 @@ fn loop_edges(face: &Face) -> impl Iterator<Item = usize> + '_ {
     })
 }
 
-/// True where a corner far from its point of the surface is the mesh's fault and not the file's: a vertex of the face's own, or
-/// one of an edge that the surface has a nearer point for than the corner's.
+/// True where a corner far from its point of the surface is the mesh's fault and not the file's: a vertex of
+/// the face's own, or one of an edge that the surface has a nearer point for than the corner's.
 fn is_misplaced(context: &Context<'_>, chart: &Chart<'_>, position: u32, on_surface: DVec3) -> bool {
     let p = context.mesh.positions[position as usize];
     let distance = p.distance(on_surface);
@@ -254,8 +254,8 @@ fn is_degenerate(index: [u32; 3], p: [DVec3; 3], rounding: f64) -> bool {
     (p[1] - p[0]).cross(p[2] - p[0]).length() <= longest * rounding / 16.0
 }
 
-/// Files lie about the sense of a surface or about the direction of a loop, but hardly about both; unless the shell is
-/// inside out in the file, which only its volume tells.
+/// Files lie about the sense of a surface or about the direction of a loop, but hardly about both; unless the
+/// shell is inside out in the file, which only its volume tells.
 fn is_turned_over(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
     chart.turned != face.normal_reversed() && bounds.forward == 0
 }

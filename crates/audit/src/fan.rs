@@ -1,7 +1,8 @@
 //! Triangles with a corner at a pole, proven over sectors that fit each other.
 //!
-//! A chart gives a pole many points, each of which a few neighbours fan from; between the fans of p_k and p_k+1 a sliver of
-//! surface is left that has no triangle over it, only an edge. Seen along parameter lines there are no slivers:
+//! A chart gives a pole many points, each of which a few neighbours fan from; between the fans of p_k and
+//! p_k+1 a sliver of surface is left that has no triangle over it, only an edge. Seen along parameter lines
+//! there are no slivers:
 //!
 //! ```text
 //!   q_x ═══ pole ═══ q_y        one vertex P
@@ -11,12 +12,14 @@
 //!    x ───────────── y
 //! ```
 //!
-//! The sectors between lines of one parameter cover what the fans and slivers cover, and neighbours share their sides.
-//! Over a sector n·(S − X) is bounded for the facet's normal n (second derivatives, with lattice points in between), and the
-//! images of the three sides may bend sideways by τ, which costs the slope of S against the facet times τ. A side that is a chord
-//! of a model edge ends the face: the lens between the image of its line and the edge is as near to the chord as the two are.
+//! The sectors between lines of one parameter cover what the fans and slivers cover, and neighbours share
+//! their sides. Over a sector n·(S − X) is bounded for the facet's normal n (second derivatives, with lattice
+//! points in between), and the images of the three sides may bend sideways by τ, which costs the slope of S
+//! against the facet times τ. A side that is a chord of a model edge ends the face: the lens between the
+//! image of its line and the edge is as near to the chord as the two are.
 //!
-//! Not proven: that slope is sampled, because second derivatives say little of it at a pole; 1.5 times what was seen is used.
+//! Not proven: that slope is sampled, because second derivatives say little of it at a pole; 1.5 times what
+//! was seen is used.
 
 use chordal_nurbs::{Component, DVec2, DVec3, Piece, SurfaceBounds, UvBox};
 
@@ -80,7 +83,8 @@ pub(crate) fn fan_bound(bounds: &SurfaceBounds<'_>, fan: &Fan, enough: f64, piec
             let leaning = if slope < 0.5 { along + 2.0 * slope * shift } else { f64::INFINITY };
             let whole = along.hypot(shift);
             error = error.max(match side {
-                // What lies in the lens lies over the facet's plane, and on level ground only its height counts.
+                // What lies in the lens lies over the facet's plane, and on level ground only its height
+                // counts.
                 Side::Chord(sag) => one.segment(a, b, pieces).hypot(shift).min(leaning).max(sag),
                 _ => leaning.min(whole),
             });
@@ -93,7 +97,8 @@ pub(crate) fn fan_bound(bounds: &SurfaceBounds<'_>, fan: &Fan, enough: f64, piec
     best
 }
 
-/// The largest slope of the surface against the plane with normal `n` seen over a quadrilateral; infinite where it is upright.
+/// The largest slope of the surface against the plane with normal `n` seen over a quadrilateral; infinite
+/// where it is upright.
 fn slope(bounds: &SurfaceBounds<'_>, n: DVec3, quad: [DVec2; 4]) -> f64 {
     const N: u32 = 3;
     let mut cosine = 1.0f64;
@@ -146,8 +151,8 @@ impl Along<'_, '_> {
         self.with_between(seen, UvBox::from_points([a, b]), &[b - a], 1.0 / 8.0, pieces)
     }
 
-    /// Adds how far n·(S − origin) may stray between points of the lattice: its product with the weight w is a polynomial g,
-    /// so it is at most (seen · (w + bend of w) + bend of g) / w.
+    /// Adds how far n·(S − origin) may stray between points of the lattice: its product with the weight w is
+    /// a polynomial g, so it is at most (seen · (w + bend of w) + bend of g) / w.
     fn with_between(
         &self,
         seen: f64,

@@ -1,15 +1,16 @@
 //! The audit of a finished mesh against the exact model.
 //!
-//! It uses the model and the mesh, and nothing of the mesher. With the mesher it shares the crate `nurbs`: evaluation,
-//! inversion, and the bounds of facets and chords; the bound of facets is therefore measured at points as well.
+//! It uses the model and the mesh, and nothing of the mesher. With the mesher it shares the crate `nurbs`:
+//! evaluation, inversion, and the bounds of facets and chords; the bound of facets is therefore measured at
+//! points as well.
 //!
 //! - Edges are sampled on their curves and in order (`edges`).
 //! - Each face is bounded by exactly the chords of its edges (`boundary`).
-//! - It covers the right part of its surface (`region`), once (`overlap`), with the area that its exact loops bound
-//!   (`area`).
+//! - It covers the right part of its surface (`region`), once (`overlap`), with the area that its exact loops
+//!   bound (`area`).
 //! - The error bounds hold (`prove`), and measured points do not exceed them (`sampled`).
-//! - Each shell is closed and oriented by the identity of its vertices (`shell`), and no facets of a closed shell cut
-//!   each other (`self_intersections`).
+//! - Each shell is closed and oriented by the identity of its vertices (`shell`), and no facets of a closed
+//!   shell cut each other (`self_intersections`).
 //!
 //! Of two meshes of which nothing else is known, [`largest_distance`] gives the distance by branch and bound.
 

@@ -1,18 +1,18 @@
 //! Whether triangles of a face lie one on another in its parameter space.
 //!
-//! All triangles run the same way round, so the number of triangles over a place is the winding number of their
-//! boundary around it. It is 1 everywhere inside exactly if
+//! All triangles run the same way round, so the number of triangles over a place is the winding number of
+//! their boundary around it. It is 1 everywhere inside exactly if
 //!
-//! 1. no two sides of the boundary cross: on the left of both sides of a crossing the number is 2 or more, or on the
-//!    right of both it is below 0;
+//! 1. no two sides of the boundary cross: on the left of both sides of a crossing the number is 2 or more, or
+//!    on the right of both it is below 0;
 //! 2. it is 1 beside each connected piece of the boundary.
 //!
-//! On a closed surface the same is checked against the boundary moved by whole periods: a face that runs round more
-//! than once must not come back over itself.
+//! On a closed surface the same is checked against the boundary moved by whole periods: a face that runs
+//! round more than once must not come back over itself.
 //!
-//! Sides that end at a pole are left out of the first check: there the chart has many points for one of the surface.
-//! Signs of areas are exact; only against moved boundaries, whose coordinates are rounded, a crossing must be wider
-//! than rounding.
+//! Sides that end at a pole are left out of the first check: there the chart has many points for one of the
+//! surface. Signs of areas are exact; only against moved boundaries, whose coordinates are rounded, a
+//! crossing must be wider than rounding.
 
 use crate::box_tree::BoxTree;
 use crate::chart::Chart;
@@ -34,7 +34,8 @@ const MOST_TURNS: i32 = 8;
 struct Side {
     a: DVec2,
     b: DVec2,
-    /// One end is on a pole, where the chart has many points for one of the surface: the side may lie anywhere.
+    /// One end is on a pole, where the chart has many points for one of the surface: the side may lie
+    /// anywhere.
     at_pole: bool,
 }
 
@@ -74,7 +75,8 @@ fn flat_box(a: DVec2, b: DVec2) -> Box3 {
     Box3::from_points([a.extend(0.0), b.extend(0.0)])
 }
 
-/// True where two sides cross inside both; each end lies farther than `depth` from the line of the other side.
+/// True where two sides cross inside both; each end lies farther than `depth` from the line of the other
+/// side.
 fn cross(s: &Side, t: &Side, depth: f64) -> bool {
     let apart = |line: &Side, other: &Side| {
         let (c, d) = (turn2(line.a, line.b, other.a), turn2(line.a, line.b, other.b));
@@ -84,7 +86,8 @@ fn cross(s: &Side, t: &Side, depth: f64) -> bool {
     !s.at_pole && !t.at_pole && apart(s, t) && apart(t, s)
 }
 
-/// One place inside the face beside each connected piece of its boundary: the middle of its largest triangle there.
+/// One place inside the face beside each connected piece of its boundary: the middle of its largest triangle
+/// there.
 fn places_inside(chart: &Chart<'_>, single: &[Half]) -> Vec<DVec2> {
     let mut piece_of: Vec<u32> = (0..chart.mesh.corners.len() as u32).collect();
     for h in single {

@@ -23,8 +23,8 @@ fn diagonal(mesh: &PartMesh) -> f64 {
     Box3::from_points(mesh.positions.iter().copied()).diagonal()
 }
 
-/// Recomputes everything that was promised of the mesh of a part. `claims`, one per face, are compared with what
-/// comes out.
+/// Recomputes everything that was promised of the mesh of a part. `claims`, one per face, are compared with
+/// what comes out.
 pub fn audit_part(
     part: &Part,
     mesh: &PartMesh,
@@ -100,7 +100,8 @@ fn malformed(part: &Part, mesh: &PartMesh) -> Option<MeshDefect> {
     })
 }
 
-/// Vertices of the part are where the model has them, and there is one of each; edge samples are in their polylines.
+/// Vertices of the part are where the model has them, and there is one of each; edge samples are in their
+/// polylines.
 fn check_origins(context: &mut Context<'_>, audit: &mut PartAudit) {
     let Context { part, mesh, .. } = *context;
     let rounding = ROUNDING * context.scale + context.options.coordinate_rounding;
@@ -136,7 +137,8 @@ fn check_origins(context: &mut Context<'_>, audit: &mut PartAudit) {
     add(lost, AuditIssue::MalformedMesh(MeshDefect::UnknownOrigins { positions: lost }));
 }
 
-/// A bound that is claimed must not be below the one recomputed; beyond rounding in the parameters found again.
+/// A bound that is claimed must not be below the one recomputed; beyond rounding in the parameters found
+/// again.
 fn check_claim(context: &Context<'_>, index: usize, face: &FaceFindings, problems: &mut Vec<Problem>) {
     let Some(claim) = context.claim(index).filter(|_| face.audit.triangles > 0) else { return };
     let floor = 4.0 * face.rounding;
@@ -199,7 +201,8 @@ fn add_shells(context: &Context<'_>, faces: &[FaceFindings], audit: &mut PartAud
 }
 
 /// Looks for facets that cut each other in every shell that the file calls closed and whose faces all have
-/// triangles. The sheets of an open shell may cross in the file, and nobody takes them for the skin of a solid.
+/// triangles. The sheets of an open shell may cross in the file, and nobody takes them for the skin of a
+/// solid.
 fn add_self_intersections(context: &Context<'_>, audit: &mut PartAudit) {
     let closed = audit.shells.iter().filter(|s| s.closed_in_file && s.complete).map(|s| s.shell);
     for shell in closed.collect::<Vec<_>>() {

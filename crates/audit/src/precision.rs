@@ -3,16 +3,16 @@
 use chordal_nurbs::{Curve, Surface};
 
 /// Rounding of a recomputed position, relative to the largest number that it is computed from: a few hundred
-/// operations, each right to half a unit in the last place. Smaller, and correct vertices far from the origin are
-/// called misplaced.
+/// operations, each right to half a unit in the last place. Smaller, and correct vertices far from the origin
+/// are called misplaced.
 pub(crate) const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
-/// A vertex may lie this share of the tolerance off its curve or surface; it is charged to the gap. Farther off, it
-/// is misplaced.
+/// A vertex may lie this share of the tolerance off its curve or surface; it is charged to the gap. Farther
+/// off, it is misplaced.
 pub(crate) const CHARGED: f64 = 1e-3;
 
-/// Bounds are computed tightly for errors of this share of the tolerance and above. At 1, a bound that is right at
-/// the tolerance would fall on either side of it by rounding.
+/// Bounds are computed tightly for errors of this share of the tolerance and above. At 1, a bound that is
+/// right at the tolerance would fall on either side of it by rounding.
 pub(crate) const AIM: f64 = 0.995;
 
 /// Triangles or corners handled by one parallel task: large against the cost of starting a task.

@@ -1,4 +1,5 @@
-//! The bounds of one face, recomputed: its triangles, its chords, and what lies between the two sides of cuts.
+//! The bounds of one face, recomputed: its triangles, its chords, and what lies between the two sides of
+//! cuts.
 
 use crate::boundary::Boundary;
 use crate::chart::Chart;
@@ -49,7 +50,8 @@ pub(crate) fn prove(
     }
 }
 
-/// The largest bound of what lies between the sides of cuts; the sides themselves are within `facets` of the mesh.
+/// The largest bound of what lies between the sides of cuts; the sides themselves are within `facets` of the
+/// mesh.
 fn slivers_error(chart: &Chart<'_>, bounds: &SurfaceBounds<'_>, at: &Boundary, facets: f64) -> f64 {
     let mut scratch = Vec::new();
     let error = |cut| match cuts::judge(chart, bounds, cut, &mut scratch) {

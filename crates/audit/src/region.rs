@@ -1,19 +1,19 @@
 //! Which part of the surface the mesh of a face covers.
 //!
-//! A bound of the distance does not tell one part of a surface from another. That the boundary of the mesh is the
-//! face's loops ([`crate::boundary`]), that all triangles run one way round and that none lies on another
-//! ([`crate::overlap`]) leaves two regions where the surface is closed: each loop has the face on one side and the
-//! rest of the surface on the other. Here the file's directions decide.
+//! A bound of the distance does not tell one part of a surface from another. That the boundary of the mesh is
+//! the face's loops ([`crate::boundary`]), that all triangles run one way round and that none lies on another
+//! ([`crate::overlap`]) leaves two regions where the surface is closed: each loop has the face on one side
+//! and the rest of the surface on the other. Here the file's directions decide.
 //!
 //! 1. A face with loops has a boundary; otherwise the whole surface is covered.
-//! 2. On a closed surface the face is on the left of its loops, seen against the normal that the file gives it. Where
-//!    the edges of a closed shell agree all round, the neighbours decide instead: files exist whose loops contradict
-//!    the sense of their face and whose shell is right.
+//! 2. On a closed surface the face is on the left of its loops, seen against the normal that the file gives
+//!    it. Where the edges of a closed shell agree all round, the neighbours decide instead: files exist whose
+//!    loops contradict the sense of their face and whose shell is right.
 //! 3. A face of a torus that meets its own axis (lemon or apple) is on one of its two sheets.
 //! 4. Vertices inside the face lie, in the chart, between its boundaries.
 //!
-//! Where the surface is not closed, the side does not matter: only one of the two regions is bounded. Files give
-//! loops and senses the wrong way round there, and the region is the same.
+//! Where the surface is not closed, the side does not matter: only one of the two regions is bounded. Files
+//! give loops and senses the wrong way round there, and the region is the same.
 
 use crate::boundary::Boundary;
 use crate::chart::Chart;
@@ -46,8 +46,8 @@ pub(crate) fn check_region(
     }
 }
 
-/// True where the face has a loop with an inside and no triangle ends at any loop. A seam that is the only loop of a
-/// whole sphere or torus is none: each of its edges runs there and back.
+/// True where the face has a loop with an inside and no triangle ends at any loop. A seam that is the only
+/// loop of a whole sphere or torus is none: each of its edges runs there and back.
 fn covers_whole_surface(face: &Face, bounds: &Boundary) -> bool {
     let is_seam = |a_loop: &Loop| match a_loop {
         Loop::Vertex(_) => true,
@@ -62,8 +62,8 @@ fn is_back(one: &Coedge, other: &Coedge) -> bool {
     other.edge == one.edge && other.forward != one.forward
 }
 
-/// True where the mesh is on the right of its loops, seen against the face's normal, and both sides are bounded. A loop
-/// that runs along a seam and back tells by the seam which side is meant.
+/// True where the mesh is on the right of its loops, seen against the face's normal, and both sides are
+/// bounded. A loop that runs along a seam and back tells by the seam which side is meant.
 pub(crate) fn is_other_side(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
     let along_normal = chart.turned == face.normal_reversed();
     let (left, right) =
@@ -103,8 +103,8 @@ fn is_on_both_sheets(chart: &Chart<'_>) -> bool {
     radii().any(|r| r > near) && radii().any(|r| r < -near)
 }
 
-/// How many vertices inside the face lie, in the chart, beyond the box of its loops. Where the mesher cut the chart open,
-/// the sides of the cut bound it as well.
+/// How many vertices inside the face lie, in the chart, beyond the box of its loops. Where the mesher cut the
+/// chart open, the sides of the cut bound it as well.
 fn beyond_boundary(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary, single: &[Half]) -> usize {
     let uv = |h: &Half| [h.a, h.b].map(|corner| chart.mesh.corners[corner as usize].uv);
     let reach = if bounds.cuts.is_empty() && bounds.stray.is_empty() {

@@ -141,15 +141,15 @@ pub struct FaceAudit {
     /// Index of the face in its part.
     pub face: u32,
     pub triangles: usize,
-    /// Recomputed bound of the two-sided distance between the exact face and its triangles, without the gap; NaN where nothing is
-    /// proven. The rounding of written coordinates is part of it.
+    /// Recomputed bound of the two-sided distance between the exact face and its triangles, without the gap;
+    /// NaN where nothing is proven. The rounding of written coordinates is part of it.
     pub proven_error: f64,
     /// Largest distance of a vertex from the surface, or of a vertex at an edge's end from the edge's curve.
     pub gap: f64,
     /// Largest angle between the exact normals at the two ends of a mesh edge, in radians.
     pub max_angle: f64,
-    /// Triangles that face away from the normals of all their corners: three points of one curved parameter line may do so
-    /// without leaving the tolerance.
+    /// Triangles that face away from the normals of all their corners: three points of one curved parameter
+    /// line may do so without leaving the tolerance.
     pub leaning: usize,
 }
 

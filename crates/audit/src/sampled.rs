@@ -1,13 +1,14 @@
 //! A second look at the error bound, by points: what is measured must not exceed what is proven.
 //!
-//! The bounds that [`crate::prove`] recomputes come from `chordal_nurbs::facet_bound`, which the mesher uses as well: a
-//! fault in it would pass both. So a share of the facets of each face, picked by their place in the list, and its
-//! largest facet are measured: points of the exact surface over the facet, at a lattice of its parameters, must be
-//! within the face's error of the facet. Evaluation of the surface is all that this shares with the bound.
+//! The bounds that [`crate::prove`] recomputes come from `chordal_nurbs::facet_bound`, which the mesher uses
+//! as well: a fault in it would pass both. So a share of the facets of each face, picked by their place in
+//! the list, and its largest facet are measured: points of the exact surface over the facet, at a lattice of
+//! its parameters, must be within the face's error of the facet. Evaluation of the surface is all that this
+//! shares with the bound.
 //!
 //! A point beyond its own facet may lie over a neighbour; where the distance from the facet is too large, the
-//! distance from the whole mesh of the face decides. Points are no proof that a bound holds, and a bound that is a
-//! little too small may pass; one that is wrong by more than what lies between lattice points does not.
+//! distance from the whole mesh of the face decides. Points are no proof that a bound holds, and a bound that
+//! is a little too small may pass; one that is wrong by more than what lies between lattice points does not.
 
 use crate::boundary::Boundary;
 use crate::chart::Chart;
@@ -19,15 +20,15 @@ use chordal_nurbs::{DVec2, DVec3, Surface};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-/// One facet of so many is measured: at 15 points a facet this is one evaluation for four facets, about a percent of
-/// what meshing them takes.
+/// One facet of so many is measured: at 15 points a facet this is one evaluation for four facets, about a
+/// percent of what meshing them takes.
 const STRIDE: usize = 64;
 
 /// Parts into which the lattice divides each side of a facet; even, so that the middles of sides are in it.
 const PARTS: usize = 4;
 
-/// Measured distances may exceed the error by this share of the tolerance: rounding on surfaces that are evaluated from
-/// large numbers, and far below what a wrong bound is wrong by.
+/// Measured distances may exceed the error by this share of the tolerance: rounding on surfaces that are
+/// evaluated from large numbers, and far below what a wrong bound is wrong by.
 const NEGLIGIBLE: f64 = 1e-4;
 
 /// Measures facets where the face's error is proven.
@@ -98,7 +99,8 @@ impl Measured {
         })
     }
 
-    /// The points over the facet that are farther from it than `limit`, with their distances; `None` where none is.
+    /// The points over the facet that are farther from it than `limit`, with their distances; `None` where
+    /// none is.
     fn points_beyond(&self, chart: &Chart<'_>, limit: f64) -> Option<Vec<(DVec3, f64)>> {
         let lattice = (0..=PARTS).flat_map(|i| (0..=PARTS - i).map(move |j| (i, j)));
         let at = |(i, j): (usize, usize)| {
@@ -110,8 +112,8 @@ impl Measured {
         (!beyond.is_empty()).then_some(beyond)
     }
 
-    /// The distance of a point from the facet. Across a side at which the face ends, the facet goes on in its plane: the
-    /// straight line between two parameters may lie outside the face, where there is no mesh.
+    /// The distance of a point from the facet. Across a side at which the face ends, the facet goes on in its
+    /// plane: the straight line between two parameters may lie outside the face, where there is no mesh.
     fn distance(&self, p: DVec3) -> f64 {
         let [a, b, c] = self.xyz;
         let n = (b - a).cross(c - a);

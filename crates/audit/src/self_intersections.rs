@@ -1,15 +1,16 @@
 //! Closed shells whose facets cut each other.
 //!
-//! A solid whose mesh cuts itself has no inside that a mesher of volumes, a slicer or a Boolean could use, although it
-//! is closed and every facet is within its tolerance: thin walls, fillets that are nearly tangent, loose edges.
+//! A solid whose mesh cuts itself has no inside that a mesher of volumes, a slicer or a Boolean could use,
+//! although it is closed and every facet is within its tolerance: thin walls, fillets that are nearly
+//! tangent, loose edges.
 //!
 //! 1. A tree over the boxes of the faces gives pairs of faces that may meet.
 //! 2. Trees over the boxes of their facets, built when first needed, give pairs of facets.
 //! 3. Exact predicates decide ([`crate::triangle_pair`]).
 //!
 //! Two facets of one face are compared only where the surface can come back to itself. The facets of a plane,
-//! cylinder, cone, sphere or plain torus lie one beside the other because their parameters do not overlap, which is
-//! checked in the chart.
+//! cylinder, cone, sphere or plain torus lie one beside the other because their parameters do not overlap,
+//! which is checked in the chart.
 
 use crate::box_tree::BoxTree;
 use crate::context::Context;

@@ -1,9 +1,10 @@
 //! Whether two triangles cut each other, by exact predicates.
 //!
-//! Two triangles cut each other where the inside of one meets a side of the other: a side of one passes through the
-//! inside of the other, or both lie in one plane and overlap. Contact is no cut: triangles that share vertices, or
-//! that touch at a point or along a line, pass. The signs come from `robust`, so a decision is exact for the
-//! coordinates as they are; corners that triangles share are recognised by their index, not by their place.
+//! Two triangles cut each other where the inside of one meets a side of the other: a side of one passes
+//! through the inside of the other, or both lie in one plane and overlap. Contact is no cut: triangles that
+//! share vertices, or that touch at a point or along a line, pass. The signs come from `robust`, so a
+//! decision is exact for the coordinates as they are; corners that triangles share are recognised by their
+//! index, not by their place.
 //!
 //! ```text
 //!   no corner in common      one in common           two in common
@@ -13,16 +14,17 @@
 //!                              d, e through the other  b   c d   same side of a b
 //! ```
 //!
-//! Not found: cuts that run exactly through vertices and sides only, which rounding of coordinates makes rare.
+//! Not found: cuts that run exactly through vertices and sides only, which rounding of coordinates makes
+//! rare.
 
 use chordal_nurbs::{Box3, DVec2, DVec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 type Triangle = [DVec3; 3];
 
-/// The rounding of n·(p − a) relative to the largest coordinates of the two sides and of p − a: Shewchuk's bound of
-/// orient3d, 7.8e-16 times a sum of six products of three coordinates, and no sum of six is larger than six times
-/// the largest. Beyond it the sign of the plain product is right.
+/// The rounding of n·(p − a) relative to the largest coordinates of the two sides and of p − a: Shewchuk's
+/// bound of orient3d, 7.8e-16 times a sum of six products of three coordinates, and no sum of six is larger
+/// than six times the largest. Beyond it the sign of the plain product is right.
 const FILTER: f64 = 5e-15;
 
 /// A triangle with the indices of its corners, prepared for many comparisons.
@@ -142,8 +144,8 @@ fn on_same_side(a: f64, b: f64) -> bool {
     !((a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0))
 }
 
-/// Two corners in common; `i` and `j` are the corners that are not. A side in common is cut only by a fold onto
-/// itself.
+/// Two corners in common; `i` and `j` are the corners that are not. A side in common is cut only by a fold
+/// onto itself.
 fn folded(s: &Facet3, t: &Facet3, i: usize, j: usize) -> bool {
     if s.side_of(t.xyz[j]) != 0.0 {
         return false;

@@ -1,8 +1,8 @@
 //! Real models, meshed and audited: what is found, and what the audit costs beside the meshing.
 //!
-//! `cargo test --release -p chordal-audit --test models -- --ignored --nocapture` reads them from `CHORDAL_MODELS`, or else from
-//! `../shared/models` beside the repository; `CHORDAL_ONLY` picks those whose name contains it, `CHORDAL_SHARE` the tolerance as a
-//! share of each part's diagonal (1e-3).
+//! `cargo test --release -p chordal-audit --test models -- --ignored --nocapture` reads them from
+//! `CHORDAL_MODELS`, or else from `../shared/models` beside the repository; `CHORDAL_ONLY` picks those whose
+//! name contains it, `CHORDAL_SHARE` the tolerance as a share of each part's diagonal (1e-3).
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,5 @@
-//! Bounds of facets against brute force, on random patches: rational, skew, degree 2 to 20, one or several spans.
+//! Bounds of facets against brute force, on random patches: rational, skew, degree 2 to 20, one or several
+//! spans.
 
 #![allow(clippy::unwrap_used)]
 
@@ -122,7 +123,8 @@ fn blend3(p: [DVec3; 3], w: [f64; 3]) -> DVec3 {
     p[0] * w[0] + p[1] * w[1] + p[2] * w[2]
 }
 
-/// The distance from a point to the image of a triangle, looked for from `start` by ever smaller steps until it is within `enough`.
+/// The distance from a point to the image of a triangle, looked for from `start` by ever smaller steps until
+/// it is within `enough`.
 fn distance_to_image(surface: &Surface, uv: [DVec2; 3], p: DVec3, start: [f64; 3], enough: f64) -> f64 {
     let at = |w: [f64; 3]| surface.point(blend2(uv, w)).distance(p);
     let (mut best, mut w, mut step) = (at(start), start, 0.1);
@@ -272,8 +274,8 @@ fn no_chord_of_a_patch_is_farther_off_than_its_bound() {
     quantiles("chords in eight parts", in_parts);
 }
 
-/// Along the nose of a ring thin facets shift sideways by more than they are high: their own plane says little of how steep the
-/// surface is.
+/// Along the nose of a ring thin facets shift sideways by more than they are high: their own plane says
+/// little of how steep the surface is.
 #[test]
 fn no_sliver_on_a_nose_is_farther_off_than_its_bound() {
     let mut random = Random(seed().rotate_left(17) ^ 0x1234_5678_9ABC_DEF1);
@@ -393,7 +395,8 @@ impl Grid {
     }
 }
 
-/// The worst bound of a grid and its measured distance from the surface; `None` where the surface degenerates.
+/// The worst bound of a grid and its measured distance from the surface; `None` where the surface
+/// degenerates.
 fn bound_and_truth(random: &mut Random, surface: &Surface, uv_box: UvBox) -> Option<(f64, f64)> {
     let grid = Grid::new(random, surface, uv_box);
     let facets: Vec<Facet> = grid.triangles.iter().map(|&t| grid.facet(surface, t)).collect();

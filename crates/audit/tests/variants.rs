@@ -1,4 +1,5 @@
-//! Rotated, mirrored and scaled by 1000, a model gets the same mesh: as closed, as near, with as many triangles.
+//! Rotated, mirrored and scaled by 1000, a model gets the same mesh: as closed, as near, with as many
+//! triangles.
 
 #![allow(clippy::unwrap_used)]
 
@@ -66,14 +67,16 @@ fn moved_curve(curve: &Curve, by: &DAffine3) -> Option<Arc<Curve>> {
     curve.transformed(by).map(Arc::new)
 }
 
-/// The surface, whether its normal is now on the other side of the material, and what its parameters are multiplied by.
+/// The surface, whether its normal is now on the other side of the material, and what its parameters are
+/// multiplied by.
 fn moved_surface(surface: &Surface, by: &DAffine3) -> Option<(Surface, bool, DVec2)> {
     let image = surface.transformed(by)?;
     let domain = surface.domain();
     let uv = if domain.is_finite() { domain.min + domain.size() * 0.37 } else { DVec2::new(0.3, 0.4) };
     let uv = domain.clamp(uv);
     let (before, after) = (surface.normal(uv)?, image.surface.normal(image.parameters(uv))?);
-    // Normals go with the inverse transpose; for maps that keep shapes that is the map itself, but for its scale.
+    // Normals go with the inverse transpose; for maps that keep shapes that is the map itself, but for its
+    // scale.
     let carried = by.transform_vector3(before).normalize();
     let factors = image.factors();
     Some((image.surface, carried.dot(after) < 0.0, factors))

@@ -1,11 +1,13 @@
-//! How far a mesh, whoever made it, lies from a CAD model: measured at samples, and enclosed, in both directions.
+//! How far a mesh, whoever made it, lies from a CAD model: measured at samples, and enclosed, in both
+//! directions.
 //!
-//! The model is meshed finely; vertices of that mesh lie on the exact surfaces, and its triangles within its proven
-//! error of them. Model → mesh: from these vertices to the nearest triangle of the mesh. Mesh → model: from samples of
-//! the mesh to the exact surface near the closest fine triangle ([`reference`]), so that the error of the fine mesh is
-//! not taken for one of the mesh. What the edges of the file lie off its surfaces is subtracted on both ways: no mesh
-//! can be nearer to both. Where every face is proven, branch and bound between the two meshes also gives distances that
-//! no point can exceed; these contain the error of the fine mesh and what the file is loose by.
+//! The model is meshed finely; vertices of that mesh lie on the exact surfaces, and its triangles within its
+//! proven error of them. Model → mesh: from these vertices to the nearest triangle of the mesh. Mesh → model:
+//! from samples of the mesh to the exact surface near the closest fine triangle ([`reference`]), so that the
+//! error of the fine mesh is not taken for one of the mesh. What the edges of the file lie off its surfaces
+//! is subtracted on both ways: no mesh can be nearer to both. Where every face is proven, branch and bound
+//! between the two meshes also gives distances that no point can exceed; these contain the error of the fine
+//! mesh and what the file is loose by.
 
 mod reference;
 
@@ -31,11 +33,11 @@ const WORST: usize = 10;
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AgainstReport {
     pub model: String,
-    /// "branch and bound": the distances lie between those measured at samples and `…_at_most`; "measured": largest
-    /// distances over samples, which are lower bounds.
+    /// "branch and bound": the distances lie between those measured at samples and `…_at_most`; "measured":
+    /// largest distances over samples, which are lower bounds.
     pub method: String,
-    /// Largest distance of a sample of the mesh from the model's exact faces, beyond the gap between edges and surfaces
-    /// that the file has there.
+    /// Largest distance of a sample of the mesh from the model's exact faces, beyond the gap between edges
+    /// and surfaces that the file has there.
     pub mesh_to_model: f64,
     /// Largest distance of a sample of the model's exact faces from the mesh, beyond that gap.
     pub model_to_mesh: f64,
@@ -62,8 +64,8 @@ pub struct WorstFace {
     pub distance: f64,
 }
 
-/// Measures the distance between `soup`, in millimetres and Z up, and the model in the file `input`; `options` are
-/// those of the fine mesh.
+/// Measures the distance between `soup`, in millimetres and Z up, and the model in the file `input`;
+/// `options` are those of the fine mesh.
 ///
 /// # Errors
 /// Where the model cannot be read or meshed.

@@ -52,8 +52,8 @@ impl CheckReport {
     }
 }
 
-/// Checks a mesh file; `unit` is that of its coordinates where it states none or states it wrongly. `against` names a
-/// CAD file to compare it with, by a fine mesh with these options.
+/// Checks a mesh file; `unit` is that of its coordinates where it states none or states it wrongly. `against`
+/// names a CAD file to compare it with, by a fine mesh with these options.
 ///
 /// # Errors
 /// Where a file cannot be read.

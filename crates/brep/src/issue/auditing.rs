@@ -1,7 +1,7 @@
 //! What can be found by the audit of a finished mesh.
 //!
-//! The source of the [`crate::Issue`] is the part, shell, face or edge that the finding is about, so the sentences
-//! here do not repeat it.
+//! The source of the [`crate::Issue`] is the part, shell, face or edge that the finding is about, so the
+//! sentences here do not repeat it.
 
 use super::words::{count, length_mm, number};
 use crate::Source;
@@ -14,7 +14,8 @@ use std::fmt;
 pub enum AuditIssue {
     /// The arrays of the mesh contradict each other or the model; nothing else can be checked.
     MalformedMesh(MeshDefect),
-    /// A face has no triangles although neither the file nor the mesher reported it as failed or without area.
+    /// A face has no triangles although neither the file nor the mesher reported it as failed or without
+    /// area.
     MissingFace,
     /// No triangle of the face runs along these chords of its edges: a skipped sample, a filled hole.
     MissingChords {

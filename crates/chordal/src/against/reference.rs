@@ -1,9 +1,9 @@
 //! The fine mesh that stands for a model in a comparison, with the exact face behind each of its triangles.
 //!
-//! The distance of a point from the fine mesh is that from the model to within the error of the fine mesh. So where it
-//! matters, the nearest point of the fine mesh is only the start: Gauss–Newton from its parameters leads to the nearest
-//! point of the exact surface there, and the shorter of the two distances is taken. What the edges of the file lie off
-//! its surfaces is no error of a mesh, and is subtracted.
+//! The distance of a point from the fine mesh is that from the model to within the error of the fine mesh. So
+//! where it matters, the nearest point of the fine mesh is only the start: Gauss–Newton from its parameters
+//! leads to the nearest point of the exact surface there, and the shorter of the two distances is taken. What
+//! the edges of the file lie off its surfaces is no error of a mesh, and is subtracted.
 
 use crate::meshed_part::MeshedPart;
 use crate::names::face_kind;
@@ -15,11 +15,12 @@ use chordal_mesh::FaceMesh;
 use chordal_nurbs::{DAffine3, DVec2, DVec3, Surface, Wrap};
 use rayon::prelude::*;
 
-/// Steps of Gauss–Newton: the start is within the error of the fine mesh, and each step about doubles the digits.
+/// Steps of Gauss–Newton: the start is within the error of the fine mesh, and each step about doubles the
+/// digits.
 const STEPS: usize = 6;
 
-/// The nearest point of the surface may be this many times as far from the nearest point of the fine mesh as the
-/// point itself: farther, and it has left the face.
+/// The nearest point of the surface may be this many times as far from the nearest point of the fine mesh as
+/// the point itself: farther, and it has left the face.
 const SLIDE: f64 = 2.0;
 
 /// Points refined together before the largest distance is looked at again.
@@ -69,7 +70,8 @@ impl<'a> Reference<'a> {
         Self { faces, triangles, tree, owners }
     }
 
-    /// The largest distance of any of the points from the exact faces, beyond what the file is loose by there.
+    /// The largest distance of any of the points from the exact faces, beyond what the file is loose by
+    /// there.
     pub fn farthest(&self, points: &[DVec3]) -> f64 {
         let measure = |&p: &DVec3| self.tree.nearest(p).map(|n| (self.beyond_gap(n.distance, &n), n, p));
         let mut all: Vec<(f64, Nearest, DVec3)> = points.par_iter().filter_map(measure).collect();
@@ -90,7 +92,8 @@ impl<'a> Reference<'a> {
         (distance - self.faces[self.owners[nearest.index].0 as usize].gap).max(0.0)
     }
 
-    /// The distance of `p` from the exact surface near the nearest point of the fine mesh, where that is smaller.
+    /// The distance of `p` from the exact surface near the nearest point of the fine mesh, where that is
+    /// smaller.
     fn refined(&self, p: DVec3, nearest: &Nearest) -> f64 {
         let (face, triangle) = self.owners[nearest.index];
         let face = &self.faces[face as usize];
@@ -111,8 +114,8 @@ impl PlacedFace<'_> {
         self.world.transform_point3(self.meshed.mesh.positions[position as usize])
     }
 
-    /// The largest distance of a corner, which lies on the exact face, from a mesh, beyond the gap; and the number of
-    /// corners.
+    /// The largest distance of a corner, which lies on the exact face, from a mesh, beyond the gap; and the
+    /// number of corners.
     pub fn distance_from(&self, mesh: &TriangleTree) -> (f64, usize) {
         let n = self.mesh.corners.len();
         let distances = (0..n as u32).map(|c| mesh.distance(self.corner(c), f64::INFINITY));
