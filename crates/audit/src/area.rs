@@ -55,7 +55,7 @@ pub(crate) fn check_area(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boun
     if bounds.missing > 0 || !bounds.stray.is_empty() || bounds.chords.is_empty() {
         return;
     }
-    let places = places(chart, bounds);
+    let places = if is_flat(chart) { FxHashMap::default() } else { places(chart, bounds) };
     let mut loops = Vec::new();
     for (a_loop, direction) in log.face.loops.iter().zip(&bounds.directions) {
         let Some(forward) = *direction else { continue };
@@ -156,12 +156,14 @@ fn follow(
     a_loop: &Loop,
     places: &FxHashMap<u32, DVec2>,
 ) -> Option<Followed> {
-    let (positions, middles) = points_of(context, a_loop)?;
+    let Trail { positions, middles, .. } = Trail::of(context, a_loop, !is_flat(chart))?;
     if positions.iter().any(|&p| is_at_pole(chart, context, p)) {
         return None;
     }
-    let start = *places.get(positions.first()?)?;
-    let mut walk = Walk { chart, uv: start, off: 0.0 };
+    let first = positions.first()?;
+    // A plane needs no place to start from.
+    let uv = if is_flat(chart) { DVec2::ZERO } else { *places.get(first)? };
+    let mut walk = Walk { chart, uv, off: 0.0 };
     let mut corners = Vec::with_capacity(positions.len() + 1);
     corners.push(walk.step(context.mesh.positions[positions[0] as usize])?);
     for (i, middle) in middles.iter().enumerate() {
@@ -180,49 +182,57 @@ fn is_at_pole(chart: &Chart<'_>, context: &Context<'_>, position: u32) -> bool {
     chart.poles.iter().any(|pole| pole.point.distance(p) <= near)
 }
 
-/// The positions along a loop, and the middle of the exact curve between each and the next, where it is not
-/// straight.
-fn points_of(context: &Context<'_>, a_loop: &Loop) -> Option<(Vec<u32>, Vec<Option<DVec3>>)> {
-    let mut positions = Vec::new();
-    let mut between = Vec::new();
-    match a_loop {
-        Loop::Vertex(_) => return None,
-        Loop::Polygon { vertices, .. } => {
-            for v in vertices {
-                positions.push(context.vertex_at.get(v.index()).copied().flatten()?);
-                between.push(None);
-            }
-        }
-        Loop::Edges { coedges, .. } => {
-            for coedge in coedges {
-                add_coedge(context, coedge, &mut positions, &mut between)?;
-            }
-        }
-    }
-    Some((positions, between))
+fn is_flat(chart: &Chart<'_>) -> bool {
+    matches!(chart.surface, Surface::Plane { .. })
 }
 
-fn add_coedge(
-    context: &Context<'_>,
-    coedge: &Coedge,
-    positions: &mut Vec<u32>,
-    between: &mut Vec<Option<DVec3>>,
-) -> Option<()> {
-    let index = coedge.edge.index();
-    let Some(curve) = &context.part.edges[index].curve else { return Some(()) };
-    let line = &context.mesh.edges[index];
-    let at = &context.edges[index].parameters;
-    if at.len() != line.len() || line.is_empty() {
-        return None;
+/// The points along a loop.
+#[derive(Default)]
+struct Trail {
+    positions: Vec<u32>,
+    /// The middle of the exact curve between each position and the next, where it helps to follow a curve.
+    middles: Vec<Option<DVec3>>,
+    wants_middles: bool,
+}
+
+impl Trail {
+    /// `None` for a loop without points, or with an edge whose samples are not in order.
+    fn of(context: &Context<'_>, a_loop: &Loop, wants_middles: bool) -> Option<Self> {
+        let mut trail = Self { wants_middles, ..Self::default() };
+        match a_loop {
+            Loop::Vertex(_) => return None,
+            Loop::Polygon { vertices, .. } => {
+                for v in vertices {
+                    trail.positions.push(context.vertex_at.get(v.index()).copied().flatten()?);
+                    trail.middles.push(None);
+                }
+            }
+            Loop::Edges { coedges, .. } => {
+                for coedge in coedges {
+                    trail.add(context, coedge)?;
+                }
+            }
+        }
+        Some(trail)
     }
-    let chords = line.len() - 1;
-    for k in 0..chords {
-        let (from, to) = if coedge.forward { (k, k + 1) } else { (chords - k, chords - k - 1) };
-        positions.push(line[from]);
-        let is_straight = matches!(**curve, Curve::Line { .. });
-        between.push((!is_straight).then(|| curve.point(0.5 * (at[from] + at[to]))));
+
+    fn add(&mut self, context: &Context<'_>, coedge: &Coedge) -> Option<()> {
+        let index = coedge.edge.index();
+        let Some(curve) = &context.part.edges[index].curve else { return Some(()) };
+        let line = &context.mesh.edges[index];
+        let at = &context.edges[index].parameters;
+        if at.len() != line.len() || line.is_empty() {
+            return None;
+        }
+        let needs_middle = self.wants_middles && !matches!(**curve, Curve::Line { .. });
+        let chords = line.len() - 1;
+        for k in 0..chords {
+            let (from, to) = if coedge.forward { (k, k + 1) } else { (chords - k, chords - k - 1) };
+            self.positions.push(line[from]);
+            self.middles.push(needs_middle.then(|| curve.point(0.5 * (at[from] + at[to]))));
+        }
+        Some(())
     }
-    Some(())
 }
 
 /// Follows points on the surface.

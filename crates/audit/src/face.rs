@@ -9,7 +9,7 @@ use crate::halves::{Half, Halves, half_key};
 use crate::overlap::overlaps;
 use crate::precision::CHUNK;
 use crate::prove;
-use crate::region::{check_region, is_other_side};
+use crate::region::{LoopSide, check_region, loop_side};
 use crate::report::FaceAudit;
 use crate::sampled::check_samples;
 use chordal_brep::issue::MeshDefect;
@@ -56,7 +56,11 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     let bounds_of = boundary(context, face, mesh, &halves.single);
     let folded = check_triangles(context, &chart, &mut found, &mut log);
     found.turned_over = is_turned_over(&chart, &bounds_of, log.face);
-    found.other_side = is_other_side(&chart, &bounds_of, log.face);
+    let side = loop_side(&chart, &bounds_of, log.face);
+    found.other_side = side == LoopSide::AgainstLoops;
+    if side == LoopSide::AgainstSense {
+        log.add(AuditIssue::OtherSide);
+    }
     check_boundary(context, &chart, &bounds_of, &mut log);
     check_region(context, &chart, &bounds_of, &halves.single, &mut log);
     if folded == 0 {

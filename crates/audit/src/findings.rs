@@ -25,7 +25,7 @@ pub(crate) struct FaceFindings {
     pub shared_triangles: Vec<[u32; 3]>,
     /// Every triangle runs against the sense of the face, and no loop explains it.
     pub turned_over: bool,
-    /// The mesh is on the wrong side of the loops, as the file directs them.
+    /// The mesh is on the other side of its loops by their direction, which a closed shell may refute.
     pub other_side: bool,
     pub problems: Vec<Problem>,
 }

@@ -62,17 +62,36 @@ fn is_back(one: &Coedge, other: &Coedge) -> bool {
     other.edge == one.edge && other.forward != one.forward
 }
 
-/// True where the mesh is on the right of its loops, seen against the face's normal, and both sides are
-/// bounded. A loop that runs along a seam and back tells by the seam which side is meant.
-pub(crate) fn is_other_side(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
-    let along_normal = chart.turned == face.normal_reversed();
-    let (left, right) =
-        if along_normal { (bounds.forward, bounds.backward) } else { (bounds.backward, bounds.forward) };
+/// Whether the mesh is on the side of its loops that the file means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LoopSide {
+    /// It is, or only one side is bounded.
+    Right,
+    /// Its triangles face as the file says, and its loops run the other way round. A shell that is closed and
+    /// consistent refutes the direction of the loops: the neighbours run along the same edges.
+    AgainstLoops,
+    /// Its triangles run along the loops as the file says, and face the other way. The neighbours cannot
+    /// tell: a cap of a sphere and the rest of it close the same hole, and only the sense of the face
+    /// differs.
+    AgainstSense,
+}
+
+/// Finds the side of the loops where both sides are bounded. A loop that runs along a seam and back tells by
+/// the seam which side is meant.
+pub(crate) fn loop_side(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> LoopSide {
     let cut_open = |a_loop: &Loop| match a_loop {
         Loop::Edges { coedges, .. } => coedges.iter().any(|c| coedges.iter().any(|other| is_back(c, other))),
         _ => false,
     };
-    left == 0 && right > 0 && is_closed(chart) && !face.loops.iter().any(cut_open)
+    if !is_closed(chart) || face.loops.iter().any(cut_open) {
+        return LoopSide::Right;
+    }
+    let along_normal = chart.turned == face.normal_reversed();
+    match (bounds.forward > 0, bounds.backward > 0) {
+        (false, true) if along_normal => LoopSide::AgainstLoops,
+        (true, false) if !along_normal => LoopSide::AgainstSense,
+        _ => LoopSide::Right,
+    }
 }
 
 /// True where the surface has no border: in each direction it is periodic or ends in poles.
