@@ -45,6 +45,8 @@ pub(crate) struct FaceResult {
     pub phases: Phases,
     /// The cells of a subdivision, where they are asked for.
     pub cells: Vec<UvBox>,
+    /// A fault of this program in a method, after which the default mesher took over.
+    pub mended: Option<MeshIssue>,
 }
 
 impl FaceResult {

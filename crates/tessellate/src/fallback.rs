@@ -4,9 +4,11 @@
 //! method may have asked for chords that the default can do without. A pass counts only if it leaves fewer
 //! faces unproven.
 
+use crate::face_result::Meshed;
 use crate::part_job::PartJob;
 use crate::rounds::{Pass, PassResult};
 use crate::shared_inner_edges::{separate, unproven_faces};
+use chordal_brep::MeshIssue;
 
 /// Passes in which the default takes over: first the unproven faces, then with their neighbours, which may be
 /// the ones that ask for finer edges. Further passes would only add the neighbours' neighbours.
@@ -35,14 +37,24 @@ pub(crate) fn leave_to_default(job: &PartJob<'_>, mut result: PassResult) -> Pas
         if count(&still_unproven) >= count(&unproven) {
             break;
         }
-        for (face, _) in again.faces.iter_mut().zip(&by_default).filter(|(_, by_default)| **by_default) {
-            if let Ok(face) = face {
-                face.trace.add("faces left to the default methods", 1);
+        for (face, meshed) in again.faces.iter_mut().enumerate().filter(|(face, _)| by_default[*face]) {
+            if let Ok(meshed) = meshed {
+                meshed.trace.add("faces left to the default methods", 1);
+                meshed.mended = internal_error(&result.faces[face]);
             }
         }
+        again.edge_faults.splice(..0, result.edge_faults);
         (result, unproven) = (again, still_unproven);
     }
     result
+}
+
+/// The fault of this program that a face met before, in this pass or an earlier one.
+fn internal_error(before: &Meshed) -> Option<MeshIssue> {
+    match before {
+        Ok(face) => face.mended.clone(),
+        Err(issue) => issue.is_internal().then(|| issue.clone()),
+    }
 }
 
 /// These faces and all that share an edge with them.

@@ -182,6 +182,7 @@ fn face_reports(job: &PartJob<'_>, edges: &[EdgeSamples], faces: &[Meshed]) -> V
                 phases: result.phases,
                 trace: result.trace.clone(),
                 cells: result.cells.clone(),
+                mended: result.mended.clone(),
                 zero_area: result.triangles.is_empty(),
                 lower_bound: lower_bound(&job.part.faces[index], edges, &closed, result.curvature_bound),
                 ..entry

@@ -30,6 +30,8 @@ pub struct FaceReport {
     pub phases: Phases,
     /// The cells of the subdivision in the chart, where the options ask for them.
     pub cells: Vec<UvBox>,
+    /// A fault of this program in a method, after which the default mesher took over.
+    pub mended: Option<MeshIssue>,
     /// Why the face has no triangles.
     pub failed: Option<MeshIssue>,
     /// Crossings of its loops at which the model was given a vertex (see [`PartReport::healed`]).

@@ -89,6 +89,7 @@ impl FaceMesh<'_, '_> {
             trace: self.trace,
             phases: self.phases,
             cells: self.cells,
+            mended: None,
         }
     }
 
