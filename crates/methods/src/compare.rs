@@ -71,7 +71,8 @@ pub struct ComparedRow {
     pub seconds: f64,
     /// Largest proven error; `null` where a face has no proof.
     pub proven_error: Option<f64>,
-    /// Largest distance of the surfaces from the mesh over samples of all triangles, the gap of the file included.
+    /// Largest distance of the surfaces from the mesh over samples of all triangles, the gap of the file
+    /// included.
     pub measured_error: f64,
     /// Triangles over the lower bound (docs/report.md).
     pub ratio: f64,
@@ -90,7 +91,8 @@ pub struct ComparedRow {
 pub struct StageCount {
     /// Its name.
     pub name: String,
-    /// Faces for which it ran; a face that is placed several times counts once. None for parts that work on edges.
+    /// Faces for which it ran; a face that is placed several times counts once. None for parts that work on
+    /// edges.
     pub faces: usize,
     /// The number of things that it made in all of them.
     pub count: usize,

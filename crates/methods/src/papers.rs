@@ -1,5 +1,5 @@
-//! The tables of Balázs, Guthe, Klein 2004, measured on a model: trimming edges per method (Table 2), triangles and time
-//! per surface method with and without coherence (Tables 3 and 4).
+//! The tables of Balázs, Guthe, Klein 2004, measured on a model: trimming edges per method (Table 2),
+//! triangles and time per surface method with and without coherence (Tables 3 and 4).
 
 use crate::compare::{MeshedUse, bound_name, edge_chords};
 use crate::edge_method::{EdgeMethod, edge_method_named, edge_methods};
@@ -61,8 +61,8 @@ pub struct SurfaceEntry {
     pub triangles: usize,
     /// Chords of the model's edges.
     pub edges: usize,
-    /// Shortest CPU time of all threads (wall time where the system does not tell) of some runs, from the exact model to
-    /// the mesh.
+    /// Shortest CPU time of all threads (wall time where the system does not tell) of some runs, from the
+    /// exact model to the mesh.
     pub seconds: f64,
     /// Vertices of all faces, those at edges once a face.
     pub vertices: usize,
@@ -124,7 +124,8 @@ pub fn surface_methods() -> Vec<SurfaceMethod> {
     methods
 }
 
-/// Table 2: every edge method on the loops of parts, each with its instances and its tolerance in its own units.
+/// Table 2: every edge method on the loops of parts, each with its instances and its tolerance in its own
+/// units.
 pub fn loop_entries<'a>(parts: impl Iterator<Item = (&'a Part, usize, f64)>) -> Vec<LoopEntry> {
     let methods: Vec<EdgeMethod> = edge_methods().iter().filter_map(|e| e.method).collect();
     let named = |method: &EdgeMethod| LoopEntry { method: method.name().into(), ..LoopEntry::default() };

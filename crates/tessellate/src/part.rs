@@ -24,8 +24,8 @@ use chordal_mesh::PartMesh;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Loops that cross are made anew this often: each time edges have other chords, which may show crossings that
-/// coarser ones did not.
+/// Loops that cross are made anew this often: each time edges have other chords, which may show crossings
+/// that coarser ones did not.
 const HEALINGS: usize = 3;
 
 /// Meshes one part. Never fails as a whole: a face that cannot be meshed is reported with its reason.

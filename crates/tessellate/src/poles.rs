@@ -5,8 +5,8 @@
 //! nothing:
 //!
 //! ```text
-//!   ══════════p══      p is the whole line; p–a–b is flat in space. The edge to b, the farther one, is flipped
-//!   a╌╌╌╌╌╱╱  │        to a–r, and p–a–r spans what the line does.
+//!   ══════════p══      p is the whole line; p–a–b is flat in space. The edge to b, the farther one,
+//!   a╌╌╌╌╌╱╱  │        is flipped to a–r, and p–a–r spans what the line does.
 //!   │   ╱ ╱   │
 //!   b╌╌╌╌╱╌╌╌╌r
 //! ```

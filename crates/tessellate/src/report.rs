@@ -75,14 +75,14 @@ pub struct PartReport {
     /// Rounds in which faces asked for finer edges.
     pub rounds: usize,
     pub seconds: StageSeconds,
-    /// The model that was meshed instead of the one given, where loops of faces crossed: the same faces with edges cut at
-    /// the crossings and loops that do not cross. The mesh names its edges and vertices.
+    /// The model that was meshed instead of the one given, where loops of faces crossed: the same faces with
+    /// edges cut at the crossings and loops that do not cross. The mesh names its edges and vertices.
     pub healed: Option<Arc<Part>>,
 }
 
 impl PartReport {
-    /// The parts of the mesher that ran: the name, the faces for which it ran (none for parts that work on edges) and
-    /// the number of things that it made. A name occurs several times.
+    /// The parts of the mesher that ran: the name, the faces for which it ran (none for parts that work on
+    /// edges) and the number of things that it made. A name occurs several times.
     pub fn stages(&self) -> impl Iterator<Item = (&'static str, usize, usize)> + '_ {
         let of_edges = self.edge_trace.parts().map(|(name, count)| (name, 0, count));
         let of_faces = self.faces.iter().flat_map(|face| face.trace.parts());

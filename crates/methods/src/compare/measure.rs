@@ -1,7 +1,8 @@
 //! How far a mesh lies from its surfaces, measured.
 //!
-//! Samples lie inside the triangles of the plane of parameters: between a trimming curve and its chord there may be surface that
-//! is not the face's. A sample that its own triangle does not come near may be covered by another one.
+//! Samples lie inside the triangles of the plane of parameters: between a trimming curve and its chord there
+//! may be surface that is not the face's. A sample that its own triangle does not come near may be covered by
+//! another one.
 
 use chordal_audit::TriangleTree;
 use chordal_brep::{FaceGeometry, Part};

@@ -8,8 +8,8 @@
 //! ```text
 //!        o───────o                 o───────o         o  corners of cells inside the face
 //!        │       │                 │       │         +  ends of chords
-//!   ─────┼─+─────┼────+       ─────│─+_____│____+    a corner so near to a chord that the part beyond would be
-//!        │       │                 └─┘               a sliver gives way to the chord's nearer end, too
+//!   ─────┼─+─────┼────+       ─────│─+_____│____+    a corner so near to a chord that the part beyond would
+//!        │       │                 └─┘               be a sliver is replaced by the chord's nearer end, too
 //! ```
 //!
 //! The borders are then forced into the triangulation of the loops ([`super::constrain`]): whatever is to the

@@ -13,7 +13,8 @@
 //! patch, S − c = A/w, R = max‖P − c‖ and least weight w₀,
 //!
 //! ```text
-//! ‖S_u‖ ≤ (‖A_u‖ + R|w_u|)/w₀        ‖S_uv‖ ≤ (‖A_uv‖ + R|w_uv| + ‖S_u‖|w_v| + ‖S_v‖|w_u|)/w₀        S_uu alike
+//! ‖S_u‖  ≤ (‖A_u‖ + R|w_u|)/w₀
+//! ‖S_uv‖ ≤ (‖A_uv‖ + R|w_uv| + ‖S_u‖|w_v| + ‖S_v‖|w_u|)/w₀        S_uu alike
 //! ```
 
 use chordal_nurbs::{BezierPatch, DVec2, DVec3, DVec4, NurbsSurface};

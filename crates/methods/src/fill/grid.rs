@@ -7,7 +7,8 @@
 //!
 //! ```text
 //! uniform grid    n × m cells, the fewest with ⅛(M_uu/n² + 2M_uv/nm + M_vv/m²) ≤ ε over the unit square
-//! control cells   lines through the Greville abscissae, k × k cells between them, k² ≥ the largest cell's error over ε
+//! control cells   lines through the Greville abscissae, k × k cells between them,
+//!                 k² ≥ the largest cell's error over ε
 //! ```
 
 use super::cells::{Rule, Split};

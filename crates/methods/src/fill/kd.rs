@@ -4,9 +4,10 @@
 //! the bilinear surface through the node's corners, at the parameters (ξ_k, η_l).
 //!
 //! ```text
-//! kd-tree   the line u = ξ_k or v = η_l that leaves the node's halves closer to S(ξ_k, η_l) gives the direction;
-//!           the cut lies there, or half way
-//! binary    the direction in which lines of the net bend more; the cut lies half way, or where they bend most
+//! kd-tree   the line u = ξ_k or v = η_l that leaves the node's halves closer to S(ξ_k, η_l) gives the
+//!           direction; the cut lies there, or half way
+//! binary    the direction in which lines of the net bend more; the cut lies half way, or where they bend
+//!           most
 //! ```
 //!
 //! The document leaves the direction of its binary subdivision open; bending more is what its Figure 2 shows.

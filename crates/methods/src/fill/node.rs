@@ -5,10 +5,13 @@
 //! 2, with two changes.
 //!
 //! ```text
-//! E = max ‖P_ij − B(ξ_i, η_j)‖      B the bilinear surface through the corners, ξ_i and η_j the Greville abscissae
-//! T = P_00 − P_m0 − P_0n + P_mn     (i/m and j/n where the piece is Bézier; splines reproduce bilinear maps at these)
+//! E = max ‖P_ij − B(ξ_i, η_j)‖      B the bilinear surface through the corners, ξ_i and η_j the Greville
+//!                                   abscissae
+//! T = P_00 − P_m0 − P_0n + P_mn     (i/m and j/n where the piece is Bézier; splines reproduce bilinear maps
+//!                                   at these)
 //! error ≤ E + ¼‖T‖                  polynomial, for the two halves of the node
-//! error ≤ E + ½‖T‖                  rational with positive weights: the weights pull points along the bilinear surface
+//! error ≤ E + ½‖T‖                  rational with positive weights: the weights pull points along the bilinear
+//!                                   surface
 //! ```
 //!
 //! The *estimated* error puts S(ξ_i, η_j) in place of P_ij: a sample, no bound.
@@ -18,7 +21,8 @@
 //! takes the place of Lemma 2:
 //!
 //! ```text
-//! Q_{i+a, j+b} += c_ia c_jb w_ij (P_ij − B_ab)      W_{i+a, j+b} += c_ia c_jb w_ij      a, b ∈ {0, 1}, B_ab the corners
+//! Q_{i+a, j+b} += c_ia c_jb w_ij (P_ij − B_ab)      W_{i+a, j+b} += c_ia c_jb w_ij
+//! a, b ∈ {0, 1}, B_ab the corners
 //! c_i0 = (m + 1 − i)/(m + 1)    c_i1 = (i + 1)/(m + 1)      ‖S − B‖ ≤ max ‖Q‖/W
 //! ```
 

@@ -8,8 +8,8 @@
 //! make a sliver, the constrained Delaunay triangles of the region stay.
 //!
 //! ```text
-//! o──1──o──3──o        from the upper left corner the front (l, r) moves down and right; the next corner is the one of the
-//! │ ╱  ╱   ╱  │        two ahead that lies further up and to the left
+//! o──1──o──3──o        from the upper left corner the front (l, r) moves down and right; the next
+//! │ ╱  ╱   ╱  │        corner is the one of the two ahead that lies further up and to the left
 //! 2  4   …
 //! ```
 

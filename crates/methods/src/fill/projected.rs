@@ -5,7 +5,8 @@
 //! below it. In that form:
 //!
 //! ```text
-//! n    the normal across both diagonals of the corners; the corners lie h above and below the plane with it, alternately
+//! n    the normal across both diagonals of the corners; the corners lie h above and below the plane with it,
+//!      alternately
 //! Q    the corners projected onto that plane
 //! d    the largest distance of a control point from Q: its height, and how far beside Q it falls
 //! error ≤ d + h

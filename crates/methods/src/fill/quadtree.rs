@@ -8,7 +8,8 @@
 //! ```text
 //! δ = (κ − 2ε)/‖bl‖      bl the bilinear map of the leaf onto its corners
 //! ‖bl‖ = max(‖P2 − P1‖, ‖P3 − P1‖/√2, ‖P4 − P1‖)      the document's (eq. 3): too small, up to three times
-//! ‖bl‖ = the largest singular value of (bl_u bl_v)     of the four corners: exact, as the norm is convex along both directions
+//! ‖bl‖ = the largest singular value of (bl_u bl_v)     of the four corners: exact, as the norm is convex
+//!                                                      along both directions
 //! ```
 
 use super::cells::{Rule, Split};

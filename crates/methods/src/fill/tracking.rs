@@ -10,8 +10,9 @@
 //!   ║ OverFace  ║                             ║ InVertex  ║
 //!   ╚═╤══▲══▲═══╝                             ╚══╤══╤══▲══╝
 //!     └──┘  └────────────────────────────────────┘  └──┘
-//!      3 it ends inside     2 it leaves over a face      4 it leaves along an edge, which gets its direction,
-//!                                                          and reaches the edge's other end or ends before it
+//!      3 it ends inside     2 it leaves over a face      4 it leaves along an edge, which gets its
+//!                                                          direction, and reaches the edge's other end or
+//!                                                          ends before it
 //! ```
 //!
 //! Every piece over a leaf is kept; where a curve runs along an edge, that edge stands for it.

@@ -8,9 +8,9 @@
 //!
 //! ```text
 //!   … p        q' …        … p ──── q' …              p ╲ ╱ q'
-//!       ╲    ╱                                           ╳         what lies before and behind the crossing,
-//!         ╳         =                         +        ╱   ╲  +    what lies between, and four corners as large
-//!       ╱    ╲                                      q ╱     ╲ p'   as the segments are long
+//!       ╲    ╱                                           ╳         what lies before and behind the
+//!         ╳         =                         +        ╱   ╲  +    crossing, what lies between, and four
+//!       ╱    ╲                                      q ╱     ╲ p'   corners as large as the segments are long
 //!   … q        p' …        … q ──── p' …
 //! ```
 //!

@@ -5,10 +5,11 @@
 //! right.
 //!
 //! ```text
-//!   e_top  ----------o            Between two neighbouring active edges lies a trapezoid. It began at a vertex l and
-//!        l .   trapezoid  . p     ends at the next vertex p that touches it; l–p is a diagonal (or an edge).
-//!   e_bottom ---------------o     The diagonals cut the polygon into one mountain per edge: a chain of vertices
-//!                                 over that edge, which a stack turns into triangles as the vertices arrive.
+//!   e_top  ----------o            Between two neighbouring active edges lies a trapezoid. It began at a
+//!        l .   trapezoid  . p     vertex l and ends at the next vertex p that touches it; l–p is a diagonal
+//!   e_bottom ---------------o     (or an edge). The diagonals cut the polygon into one mountain per edge: a
+//!                                 chain of vertices over that edge, which a stack turns into triangles as
+//!                                 the vertices arrive.
 //! ```
 //!
 //! Each polygon edge has the interior on exactly one side, so each edge owns exactly one mountain, and every
