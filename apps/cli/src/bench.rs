@@ -2,7 +2,9 @@
 
 use crate::args::BenchArgs;
 use crate::exit::{Exit, print, say};
-use chordal::{Cancel, JobError, JobOptions};
+use crate::messages::error_sentence;
+use crate::process::thread_pool;
+use chordal::{Cancel, Error, InputFormat, MeshOptions, Model, ReadOptions, stages};
 use serde::Serialize;
 use std::path::Path;
 use std::time::Instant;
@@ -24,8 +26,8 @@ struct Timing {
 
 pub fn run(args: &BenchArgs) -> Exit {
     // One thread unless told otherwise: what is compared is work, not cores.
-    let options = args.accuracy.options().with_jobs(Some(args.accuracy.jobs.unwrap_or(1)));
-    let pool = match chordal::thread_pool(options.jobs) {
+    let options = args.accuracy.options();
+    let pool = match thread_pool(Some(args.accuracy.jobs.unwrap_or(1))) {
         Ok(pool) => pool,
         Err(error) => {
             say(&error.to_string());
@@ -37,9 +39,12 @@ pub fn run(args: &BenchArgs) -> Exit {
     }
     let mut timings = Vec::new();
     for input in &args.inputs {
-        match pool.install(|| time(input, &options, args.warm, args.repeat)) {
+        let read = args.accuracy.read_options();
+        match pool
+            .install(|| time(input, args.accuracy.input_format, &read, &options, args.warm, args.repeat))
+        {
             Ok(timing) => timings.push(timing),
-            Err(error) => say(&error.to_string()),
+            Err(error) => say(&error_sentence(&input.display().to_string(), &error)),
         }
     }
     print(&(serde_json::to_string_pretty(&timings).expect("timings have string keys only") + "\n"));
@@ -47,11 +52,11 @@ pub fn run(args: &BenchArgs) -> Exit {
 }
 
 /// The tables of the document, one object per model.
-fn papers(args: &BenchArgs, options: &JobOptions) -> Exit {
+fn papers(args: &BenchArgs, options: &MeshOptions) -> Exit {
     let cancel = Cancel::default();
     let mut tables = Vec::new();
     for input in &args.inputs {
-        match chordal::paper_tables(input, options, &cancel) {
+        match chordal::papers::paper_tables(input, options, &cancel) {
             Ok(found) => tables.push(found),
             Err(error) => say(&error.to_string()),
         }
@@ -60,7 +65,14 @@ fn papers(args: &BenchArgs, options: &JobOptions) -> Exit {
     if tables.len() == args.inputs.len() { Exit::Clean } else { Exit::Nothing }
 }
 
-fn time(input: &Path, options: &JobOptions, warm: usize, repeat: usize) -> Result<Timing, JobError> {
+fn time(
+    input: &Path,
+    format: Option<InputFormat>,
+    read: &ReadOptions,
+    options: &MeshOptions,
+    warm: usize,
+    repeat: usize,
+) -> Result<Timing, Error> {
     let cancel = Cancel::default();
     let mut timing = Timing {
         input: input.display().to_string(),
@@ -76,17 +88,17 @@ fn time(input: &Path, options: &JobOptions, warm: usize, repeat: usize) -> Resul
     let now = || cpu_seconds().unwrap_or_else(|| origin.elapsed().as_secs_f64());
     for round in 0..warm + repeat.max(1) {
         let started = now();
-        let model = chordal::read_model(input)?;
+        let model = Model::open_with(input, format, read)?;
         let was_read = now();
-        let resolved = chordal::resolve(&model, options, None, input, &cancel)?;
-        let parts = chordal::mesh_parts(&model, &resolved, &cancel, &|_| ());
+        let resolved = stages::resolve(&model, options, &cancel)?;
+        let parts = stages::mesh_parts(&model, &resolved, &cancel);
         let meshed = now();
         if round >= warm {
             timing.read.push(was_read - started);
             timing.mesh.push(meshed - was_read);
         }
         timing.tolerance = resolved.tolerance;
-        timing.faces = model.placed_faces();
+        timing.faces = model.face_count();
         timing.triangles =
             parts.iter().zip(&resolved.uses).map(|(p, u)| p.mesh.triangle_count() * u.instances).sum();
     }

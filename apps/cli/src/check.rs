@@ -2,16 +2,17 @@
 
 use crate::args::CheckArgs;
 use crate::exit::{Exit, print, say};
-use chordal::{AgainstReport, CheckReport, JobOptions, Tolerance};
+use chordal::mesh_file::{AgainstReport, CheckReport, check_mesh};
+use chordal::{MeshOptions, Tolerance};
 use std::fmt::Write;
 
 /// The fine mesh that stands for the model: ten times as fine as the default, in percent of the diagonal.
 const REFERENCE: Tolerance = Tolerance::Percent(0.01);
 
 pub fn run(args: &CheckArgs) -> Exit {
-    let options = JobOptions::default().with_tolerance(REFERENCE);
+    let options = MeshOptions::default().with_tolerance(REFERENCE);
     let against = args.against.as_deref().map(|input| (input, &options));
-    let found = match chordal::check_mesh(&args.mesh, args.unit, against) {
+    let found = match check_mesh(&args.mesh, args.unit, against) {
         Ok(found) => found,
         Err(error) => {
             say(&error.to_string());
@@ -21,7 +22,7 @@ pub fn run(args: &CheckArgs) -> Exit {
     print(&if args.json { found.to_json() } else { text(&found) });
     let far =
         |limit: f64| found.against.as_ref().is_some_and(|a| a.mesh_to_model.max(a.model_to_mesh) > limit);
-    if found.clean() && !args.tolerance.is_some_and(far) { Exit::Clean } else { Exit::Undone }
+    if found.clean() && !args.tolerance.is_some_and(far) { Exit::Clean } else { Exit::Problems }
 }
 
 /// Writing to a string cannot fail, so results of `write!` are dropped.

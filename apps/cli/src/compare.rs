@@ -1,33 +1,43 @@
 //! `chordal compare`: the same model by several strategies.
 
-use crate::args::{CompareArgs, strategies_named};
+use crate::args::CompareArgs;
 use crate::exit::{Exit, print, say};
-use chordal::{Bound, Cancel, ComparedRow, Comparison};
+use crate::messages::error_sentence;
+use crate::process::thread_pool;
+use crate::whole_file::write_whole;
+use chordal::compare::{ComparedRow, Comparison, plot};
+use chordal::methods::{StrategyEntry, strategies};
+use chordal::{Bound, Cancel};
 use std::fmt::Write;
 
 pub fn run(args: &CompareArgs) -> Exit {
     let comparison = match compare(args) {
         Ok(comparison) => comparison,
         Err(error) => {
-            say(&error.to_string());
+            say(&error);
             return Exit::Nothing;
         }
     };
     print(&if args.json { comparison.to_json() } else { table(&comparison) });
     if let Some(path) = &args.plot
-        && let Err(error) = chordal::write_whole(path, &chordal::plot(&comparison))
+        && let Err(error) = write_whole(path, plot(&comparison).as_bytes())
     {
         say(&format!("{}: {error}", path.display()));
-        return Exit::Undone;
+        return Exit::Problems;
     }
     Exit::Clean
 }
 
-fn compare(args: &CompareArgs) -> Result<Comparison, chordal::JobError> {
+fn compare(args: &CompareArgs) -> Result<Comparison, String> {
+    if args.accuracy.strategy.strategy.is_some() {
+        return Err("--strategy has no effect here: name the strategies to compare with --strategies".into());
+    }
     let options = args.accuracy.options();
-    let strategies = strategies_named(&args.strategies);
-    let bounds: &[Bound] =
-        if args.both_bounds { &[Bound::Proven, Bound::Estimated] } else { &[options.bound] };
+    let all = || strategies().iter().collect();
+    let compared: Vec<&StrategyEntry> =
+        if args.strategies.is_empty() { all() } else { args.strategies.clone() };
+    let bound = options.mesher().bound;
+    let bounds: &[Bound] = if args.both_bounds { &[Bound::Proven, Bound::Estimated] } else { &[bound] };
     let mut tell = |row: &ComparedRow| {
         if !args.quiet {
             say(&format!(
@@ -37,8 +47,13 @@ fn compare(args: &CompareArgs) -> Result<Comparison, chordal::JobError> {
         }
     };
     let cancel = Cancel::default();
-    chordal::thread_pool(options.jobs)?
-        .install(|| chordal::compare(&args.input, &options, &strategies, bounds, &cancel, &mut tell))
+    let read = args.accuracy.read_options();
+    thread_pool(args.accuracy.jobs)?
+        .install(|| {
+            let model = chordal::Model::open_with(&args.input, args.accuracy.input_format, &read)?;
+            chordal::compare::compare(&model, &options, &compared, bounds, &cancel, &mut tell)
+        })
+        .map_err(|error| error_sentence(&args.input.display().to_string(), &error))
 }
 
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.

@@ -1,25 +1,25 @@
 //! `--device`: who evaluates faces with thousands of points.
 
 use crate::args::{EvaluateArg, MeshArgs};
-use chordal::Bulk;
+use chordal::tessellate::Bulk;
 
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 use std::sync::Arc;
 
 /// The device of one run of the program; none where the CPU does everything.
 pub struct Device {
-    #[cfg(feature = "render")]
+    #[cfg(feature = "gpu")]
     gpu: Option<Arc<chordal::GpuEvaluator>>,
 }
 
-#[cfg(not(feature = "render"))]
+#[cfg(not(feature = "gpu"))]
 impl Device {
     pub fn open(args: &MeshArgs) -> Result<Self, String> {
         match args.device {
             EvaluateArg::Cpu => Ok(Self {}),
             EvaluateArg::Gpu => {
-                Err("--device gpu: this build knows no GPU; build one that does with `cargo build \
-                                     --release -p chordal-cli --features render`"
+                Err("--device gpu: this build lacks the feature `gpu`; rebuild with `cargo build --release -p chordal-cli \
+                     --features gpu`"
                     .into())
             }
         }
@@ -32,7 +32,7 @@ impl Device {
     pub fn tell(&self) {}
 }
 
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 impl Device {
     pub fn open(args: &MeshArgs) -> Result<Self, String> {
         let open = || chordal::GpuEvaluator::open(chordal::gpu::DeviceChoice::Best);

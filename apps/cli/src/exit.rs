@@ -1,24 +1,25 @@
-//! Exit codes, and the two channels: standard output is data, standard error is talk.
+//! Exit codes, and the two channels: results on standard output, messages on standard error.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
-    /// All was done.
+    /// Done without problems.
     Clean,
-    /// Something was written, something was left undone.
-    Undone,
+    /// Done, with problems.
+    Problems,
     /// Nothing was written.
     Nothing,
 }
 
 impl Exit {
+    /// The code for the system.
     pub fn code(self) -> ExitCode {
         ExitCode::from(match self {
             Exit::Clean => 0,
-            Exit::Undone => 1,
+            Exit::Problems => 1,
             Exit::Nothing => 2,
         })
     }
@@ -26,12 +27,22 @@ impl Exit {
 
 /// One sentence on standard error.
 pub fn say(sentence: &str) {
-    // Nobody listens where this fails; that is no reason to stop.
+    // Where this fails there is nobody to tell.
     let _ = writeln!(std::io::stderr(), "chordal: {sentence}");
 }
 
-/// Data on standard output; a reader that has gone away is no error.
+/// Text on standard output; a reader that has gone away is no error.
 pub fn print(data: &str) {
+    print_bytes(data.as_bytes());
+}
+
+/// Bytes on standard output; a reader that has gone away is no error.
+pub fn print_bytes(data: &[u8]) {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(data.as_bytes()).and_then(|()| out.flush());
+    let _ = out.write_all(data).and_then(|()| out.flush());
+}
+
+/// Whether a person looks at standard output.
+pub fn stdout_is_terminal() -> bool {
+    std::io::stdout().is_terminal()
 }

@@ -1,37 +1,47 @@
-//! `chordal info`: what is in a CAD file.
+//! `chordal info`: the contents of a CAD file.
 
 use crate::args::InfoArgs;
 use crate::exit::{Exit, print, say};
-use chordal::{GapSurvey, Info, NodeInfo, PartInfo};
+use crate::inputs::Input;
+use crate::messages::error_sentence;
+use crate::reading::read_model;
+use crate::tree;
+use chordal::brep::issue::words::{count, length_mm, number};
+use chordal::report::GapSurvey;
+use chordal::{Info, PartInfo, ReadOptions};
 use std::fmt::Write;
 
+/// At most so many lines of a list are shown unless `--full` is given.
+const SHOWN: usize = 20;
+
+/// Runs the command.
 pub fn run(args: &InfoArgs) -> Exit {
-    let model = match chordal::read_model(&args.input) {
+    let input = Input::of(&args.input);
+    let model = match read_model(&input, args.input_format, &ReadOptions::default()) {
         Ok(model) => model,
         Err(error) => {
-            say(&error.to_string());
+            say(&error_sentence(&input.name(), &error));
             return Exit::Nothing;
         }
     };
-    let info = chordal::info(&model);
+    let info = model.info();
     if args.json {
         print(&(serde_json::to_string_pretty(&info).expect("info has string keys only") + "\n"));
     } else {
-        print(&text(&info));
+        print(&text(&info, if args.full { usize::MAX } else { SHOWN }));
     }
     Exit::Clean
 }
 
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.
-fn text(info: &Info) -> String {
+fn text(info: &Info, limit: usize) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "name      {}", info.name);
     let _ = writeln!(out, "format    {}", info.format);
     let _ = writeln!(out, "unit      {}", info.unit);
     if let Some([min, max]) = info.r#box {
-        let size = [max[0] - min[0], max[1] - min[1], max[2] - min[2]];
-        let [x, y, z] = size.map(|s| format!("{s:.4}"));
-        let _ = writeln!(out, "box       {x} × {y} × {z} mm, diagonal {:.6} mm", info.diagonal);
+        let [x, y, z] = [0, 1, 2].map(|i| number(max[i] - min[i], 6));
+        let _ = writeln!(out, "box       {x} × {y} × {z} mm, diagonal {} mm", number(info.diagonal, 6));
     }
     let kinds: Vec<String> =
         info.faces_by_kind.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
@@ -39,101 +49,91 @@ fn text(info: &Info) -> String {
     let gap = &info.max_gap;
     let _ = writeln!(
         out,
-        "gaps      vertex to curve {:.3e} mm{}, curve to surface {:.3e} mm{} (measured at samples)",
-        gap.vertex_to_curve,
+        "gaps      vertex to curve {}{}, curve to surface {}{} (measured at samples)",
+        length_mm(gap.vertex_to_curve),
         at(gap.vertex_to_curve_at.as_deref()),
-        gap.curve_to_surface,
+        length_mm(gap.curve_to_surface),
         at(gap.curve_to_surface_at.as_deref())
     );
-    parts(&mut out, info);
-    let _ = writeln!(out, "\ntree");
-    info.tree.iter().for_each(|node| tree(&mut out, info, node, 1));
-    lists(&mut out, info);
+    parts(&mut out, info, limit);
+    let placed: usize = info.parts.iter().map(|part| part.instances).sum();
+    let _ = writeln!(out, "\ntree ({} placed)", count(placed, "part", "parts"));
+    out.push_str(&tree::draw(info, limit));
+    lists(&mut out, info, limit);
     out
 }
 
-fn parts(out: &mut String, info: &Info) {
-    let _ = writeln!(out, "\nparts");
-    for part in &info.parts {
-        let mut holds = Vec::new();
-        let mut count = |number: usize, what: &str| {
-            if number > 0 {
-                holds.push(format!("{number} {what}"));
-            }
-        };
-        count(part.solids, "solids");
-        count(part.sheets, "sheet bodies");
-        count(part.face_sets, "face sets");
-        count(part.shells, "shells");
-        count(part.closed_shells, "of them closed");
-        count(part.faces, "faces");
-        count(part.edges, "edges");
-        count(part.vertices, "vertices");
-        count(part.tessellated_triangles, "triangles in the file");
+fn parts(out: &mut String, info: &Info, limit: usize) {
+    let _ = writeln!(out, "\nparts ({})", info.parts.len());
+    for part in info.parts.iter().take(limit) {
         let uncertainty = part.uncertainty.map_or_else(String::new, |u| format!("; uncertainty {u}"));
-        let entity = part.entity.as_deref().unwrap_or_default();
+        let entity = part.entity.as_ref().map_or_else(String::new, |entity| format!(" {entity}"));
         let name = if part.name.is_empty() { "(no name)" } else { &part.name };
-        let _ = writeln!(out, "  {name} {entity} × {}: {}{uncertainty}", part.instances, holds.join(", "));
+        let _ = writeln!(out, "  {name}{entity} × {}: {}{uncertainty}", part.instances, contents(part));
         if let Some(survey) = part.sewing.as_ref().filter(|_| part.open_edges > 0) {
             sewing(out, part, survey);
         }
     }
+    more(out, info.parts.len(), limit);
 }
 
-/// What `--sew auto` would do, and the histogram it rests on.
+/// `1 solid, 1 closed shell, 28 faces, 72 edges, 48 vertices`.
+fn contents(part: &PartInfo) -> String {
+    let open_shells = part.shells - part.closed_shells;
+    let all = [
+        (part.solids, "solid", "solids"),
+        (part.sheets, "sheet body", "sheet bodies"),
+        (part.face_sets, "face set", "face sets"),
+        (part.closed_shells, "closed shell", "closed shells"),
+        (open_shells, "open shell", "open shells"),
+        (part.faces, "face", "faces"),
+        (part.edges, "edge", "edges"),
+        (part.vertices, "vertex", "vertices"),
+        (part.tessellated_triangles, "triangle in the file", "triangles in the file"),
+    ];
+    let some: Vec<String> =
+        all.into_iter().filter(|(n, _, _)| *n > 0).map(|(n, one, many)| count(n, one, many)).collect();
+    some.join(", ")
+}
+
+/// The tolerance that `--sew auto` would take, and the histogram that it is derived from.
 fn sewing(out: &mut String, part: &PartInfo, survey: &GapSurvey) {
-    let shared = if part.topology { "" } else { ", no edge is shared by two faces" };
+    let shared = if part.topology { "" } else { ", no edge shared by two faces" };
     let sure = if survey.unambiguous { "" } else { ", ambiguous" };
+    let [low, high] = survey.empty_range.map(length_mm);
     let _ = writeln!(
         out,
-        "    open edges {}{shared}; --sew auto: {:.3e} mm (resolution {:.1e}, no gaps from {:.1e} to {:.1e}{sure})",
-        part.open_edges, survey.tolerance, survey.resolution, survey.empty_range[0], survey.empty_range[1]
+        "    {}{shared}; --sew auto: {} (resolution {}, no gaps from {low} to {high}{sure})",
+        count(part.open_edges, "open edge", "open edges"),
+        length_mm(survey.tolerance),
+        length_mm(survey.resolution),
     );
     let bins: Vec<String> =
         survey.histogram.iter().map(|(_, below, count)| format!("<{below:.0e}: {count}")).collect();
     let _ = writeln!(out, "    gaps to the nearest other border, mm  {}", bins.join("  "));
 }
 
-/// Leaves of one part under one name are counted instead of repeated.
-fn tree(out: &mut String, info: &Info, node: &NodeInfo, depth: usize) {
-    let line = |node: &NodeInfo| {
-        let part =
-            node.part.and_then(|p| info.parts.get(p)).map_or_else(String::new, |p| format!(" [{}]", p.name));
-        format!("{}{part}", if node.name.is_empty() { "(no name)" } else { &node.name })
-    };
-    if depth == 1 {
-        let _ = writeln!(out, "  {}", line(node));
+fn lists(out: &mut String, info: &Info, limit: usize) {
+    if !info.loose.is_empty() {
+        let _ = writeln!(out, "\nloose items, which belong to no face ({})", info.loose.len());
+        for item in info.loose.iter().take(limit) {
+            let entity = item.entity.as_deref().unwrap_or_default();
+            let _ = writeln!(out, "  {} {entity} {} in {}", item.kind, item.name, item.part);
+        }
+        more(out, info.loose.len(), limit);
     }
-    let indent = "  ".repeat(depth + 1);
-    let same = |a: &NodeInfo, b: &NodeInfo| {
-        a.children.is_empty() && b.children.is_empty() && (&a.name, a.part) == (&b.name, b.part)
-    };
-    for group in node.children.chunk_by(same) {
-        let times = if group.len() > 1 { format!(" × {}", group.len()) } else { String::new() };
-        let _ = writeln!(out, "{indent}{}{times}", line(&group[0]));
-        tree(out, info, &group[0], depth + 1);
+    if !info.problems.is_empty() {
+        let _ = writeln!(out, "\nproblems ({})", info.problems.len());
+        for problem in info.problems.iter().take(limit) {
+            let _ = writeln!(out, "  {}: {}", problem.severity.name(), problem.sentence());
+        }
+        more(out, info.problems.len(), limit);
     }
 }
 
-fn lists(out: &mut String, info: &Info) {
-    if !info.loose.is_empty() {
-        let _ = writeln!(out, "\nloose items: belong to no face");
-        for item in &info.loose {
-            let _ = writeln!(
-                out,
-                "  {} {} {} in {}",
-                item.kind,
-                item.entity.as_deref().unwrap_or_default(),
-                item.name,
-                item.part
-            );
-        }
-    }
-    if !info.problems.is_empty() {
-        let _ = writeln!(out, "\nproblems");
-        for problem in &info.problems {
-            let _ = writeln!(out, "  {}: {}", problem.severity.name(), problem.sentence());
-        }
+fn more(out: &mut String, number: usize, limit: usize) {
+    if number > limit {
+        let _ = writeln!(out, "  … {} more (--full)", number - limit);
     }
 }
 

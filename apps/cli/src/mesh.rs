@@ -1,145 +1,193 @@
-//! `chordal mesh`: one job per input.
+//! `chordal mesh`: every input becomes one mesh.
 
 use crate::args::MeshArgs;
 use crate::batch::{Batch, BatchFailure};
 use crate::device::Device;
-use crate::exit::{Exit, say};
+use crate::drawing::write_drawings;
+use crate::exit::{Exit, print, print_bytes, say};
 use crate::guard::guarded;
-use crate::outputs::{Outputs, plan};
+use crate::inputs::{Input, expand};
+use crate::messages::{error_sentence, tell};
+use crate::outputs::{Outputs, Target, add_output, plan};
+use crate::process::{peak_memory, thread_pool};
 use crate::progress::Bar;
-use chordal::brep::Severity;
-use chordal::brep::issue::words::{count, length_mm, number};
+use crate::reading::read_model;
+use crate::whole_file::write_whole;
 use chordal::methods::Strategy;
-use chordal::{Cancel, Job, Report};
-use std::path::Path;
+use chordal::{Cancel, Meshed, Mesher, OutputFormat, Report, WriteOptions};
+use std::time::Instant;
 
-/// At most so many warnings of one input are shown; the report has all.
-const WARNINGS_SHOWN: usize = 3;
-
+/// Runs the command.
 pub fn run(args: &MeshArgs) -> Exit {
     let cancel = Cancel::default();
     stop_on_ctrl_c(&cancel);
-    let ready = check_report_path(args).and_then(|()| check_quads(args)).and_then(|()| Device::open(args));
-    let (device, outputs) = match ready.and_then(|device| Ok((device, plan(args)?))) {
+    let ready = prepare(args);
+    let (device, inputs, outputs) = match ready {
         Ok(ready) => ready,
         Err(sentence) => {
             say(&sentence);
             return Exit::Nothing;
         }
     };
+    let pool = match thread_pool(args.accuracy.jobs) {
+        Ok(pool) => pool,
+        Err(sentence) => {
+            say(&sentence);
+            return Exit::Nothing;
+        }
+    };
+    let job = Job { args, device: &device, outputs: &outputs, cancel: &cancel };
     let mut batch = Batch::default();
-    for (input, output) in args.inputs.iter().zip(outputs.files()) {
-        match mesh_one(args, &device, input, output, &cancel) {
+    for (input, (target, format)) in inputs.iter().zip(outputs.targets()) {
+        let result = guarded(|| pool.install(|| job.mesh(input, target, format)));
+        match result.map_err(|e| format!("{}: {e}", input.name())).flatten() {
             Ok(report) => batch.reports.push(report),
             Err(error) => {
                 say(&error);
-                batch.failed.push(BatchFailure { input: input.display().to_string(), error });
+                batch.failed.push(BatchFailure { input: input.name(), error });
             }
         }
         // All or nothing: there is no use in going on.
-        if args.strict && !batch.failed.is_empty() {
+        if (args.strict && !batch.failed.is_empty()) || cancel.is_cancelled() {
             break;
         }
     }
     if !args.quiet {
         device.tell();
     }
-    finish(args, outputs, &mut batch)
+    finish(args, outputs, &batch, inputs.len())
+}
+
+fn prepare(args: &MeshArgs) -> Result<(Device, Vec<Input>, Outputs), String> {
+    check_report_path(args)?;
+    let inputs = expand(&args.inputs)?;
+    let device = Device::open(args)?;
+    let outputs = plan(args, &inputs)?;
+    if let Err(sentence) = check_formats(args, &outputs) {
+        outputs.discard();
+        return Err(sentence);
+    }
+    Ok((device, inputs, outputs))
+}
+
+/// What the inputs of one run share.
+struct Job<'a> {
+    args: &'a MeshArgs,
+    device: &'a Device,
+    outputs: &'a Outputs,
+    cancel: &'a Cancel,
+}
+
+impl Job<'_> {
+    /// Reads, meshes and writes one input.
+    fn mesh(&self, input: &Input, target: &Target, format: OutputFormat) -> Result<Report, String> {
+        let (started, accuracy) = (Instant::now(), &self.args.accuracy);
+        let failed = |error: chordal::Error| error_sentence(&input.name(), &error);
+        let bar = Bar::new(&input.name(), self.args.quiet);
+        bar.phase("reading");
+        let model = read_model(input, accuracy.input_format, &accuracy.read_options()).map_err(failed)?;
+        if self.cancel.is_cancelled() {
+            return Err(failed(chordal::Error::Cancelled));
+        }
+        let options = self.args.options(format).with_bulk(self.device.bulk());
+        let mesher = Mesher::new(options).with_cancel(self.cancel.clone()).with_progress(bar.listener());
+        let meshed = mesher.mesh(&model).map_err(failed)?;
+        if let Some(folder) = &self.args.debug_svg {
+            write_drawings(folder, &meshed).map_err(|e| format!("{}: {e}", folder.display()))?;
+        }
+        let mut report = meshed.report().clone();
+        if self.args.strict && !report.clean {
+            return Err(format!("{}: nothing written because of --strict: {}", input.name(), first(&report)));
+        }
+        bar.phase("writing");
+        let clock = Instant::now();
+        self.write(&meshed, target, format, &mut report).map_err(failed)?;
+        report.seconds.write = clock.elapsed().as_secs_f64();
+        report.seconds.total = started.elapsed().as_secs_f64();
+        report.peak_memory = peak_memory();
+        drop(bar);
+        tell(self.args.talk(), &report);
+        Ok(report)
+    }
+
+    fn write(
+        &self,
+        meshed: &Meshed,
+        target: &Target,
+        format: OutputFormat,
+        report: &mut Report,
+    ) -> Result<(), chordal::Error> {
+        let mut options = WriteOptions::new(format).with_edge_lines(self.args.edges);
+        options.unit = self.args.unit;
+        options.up = self.args.up();
+        let summary = match target {
+            Target::File(path) => meshed.write_with(self.outputs.path_now(path), &options)?,
+            Target::Stdout => {
+                let encoded = meshed.to_bytes_with(&options)?;
+                print_bytes(&encoded.bytes);
+                encoded.summary
+            }
+        };
+        add_output(report, target, format, &summary);
+        Ok(())
+    }
+}
+
+fn first(report: &Report) -> String {
+    match &report.error_sentences()[..] {
+        [] => "the mesh has problems".into(),
+        [one] => one.clone(),
+        [first, rest @ ..] => format!("{first} (and {} more)", rest.len()),
+    }
 }
 
 /// Settles what was written, and how the program ends.
-fn finish(args: &MeshArgs, outputs: Outputs, batch: &mut Batch) -> Exit {
+fn finish(args: &MeshArgs, outputs: Outputs, batch: &Batch, inputs: usize) -> Exit {
     if batch.reports.is_empty() || (args.strict && !batch.failed.is_empty()) {
         outputs.discard();
         return Exit::Nothing;
     }
-    if let Err(sentence) = outputs.settle(batch) {
+    if let Err(sentence) = outputs.settle() {
         say(&sentence);
         return Exit::Nothing;
     }
-    let mut exit = if batch.failed.is_empty() && batch.reports.iter().all(|r| r.clean) {
-        Exit::Clean
-    } else {
-        Exit::Undone
+    let all = batch.failed.is_empty() && batch.reports.len() == inputs;
+    let mut exit = if all && batch.reports.iter().all(|r| r.clean) { Exit::Clean } else { Exit::Problems };
+    let text = || match (&batch.reports[..], inputs) {
+        ([only], 1) => only.to_json(),
+        _ => batch.to_json(),
     };
-    if let Err(sentence) = write_report(args, batch) {
-        say(&sentence);
-        exit = exit.max(Exit::Undone);
+    if args.json {
+        print(&text());
+    }
+    if let Some(path) = &args.report
+        && let Err(error) = write_whole(path, text().as_bytes())
+    {
+        say(&format!("{}: cannot write the report: {error}", path.display()));
+        exit = exit.max(Exit::Problems);
     }
     exit
 }
 
-fn mesh_one(
-    args: &MeshArgs,
-    device: &Device,
-    input: &Path,
-    output: &Path,
-    cancel: &Cancel,
-) -> Result<Report, String> {
-    let name = input.file_name().map_or_else(|| input.to_string_lossy(), |n| n.to_string_lossy());
-    let bar = Bar::new(&name, args.quiet);
-    let job = Job::new(input)
-        .with_output(output)
-        .with_options(args.options().with_bulk(device.bulk()))
-        .with_cancel(cancel.clone())
-        .with_progress(bar.listener());
-    let outcome = guarded(|| chordal::run(&job)).map_err(|e| format!("{}: {e}", input.display()))?;
-    drop(bar);
-    let report = outcome.map_err(|e| e.to_string())?.report;
-    tell(args, &report);
-    Ok(report)
-}
-
-/// Prints the options, the result and the problems.
-fn tell(args: &MeshArgs, report: &Report) {
-    let input = &report.input.path;
-    if !args.quiet {
-        say(&format!("{input}: {}", options_line(report)));
-        say(&format!("{input}: {}", result_line(report)));
-        let warnings: Vec<_> = report.warnings().filter(|p| p.severity == Severity::Warning).collect();
-        for warning in warnings.iter().take(WARNINGS_SHOWN) {
-            say(&format!("{input}: warning: {}", warning.sentence()));
+/// An option that has no effect on a format is refused.
+fn check_formats(args: &MeshArgs, outputs: &Outputs) -> Result<(), String> {
+    for (target, format) in outputs.targets() {
+        use OutputFormat::{Glb, Gltf, Obj, Ply};
+        if args.edges && !matches!(format, Glb | Gltf) {
+            return Err(format!("--edges needs GLB or glTF as output: {format} has no lines"));
         }
-        if warnings.len() > WARNINGS_SHOWN {
-            let more = count(warnings.len() - WARNINGS_SHOWN, "more warning", "more warnings");
-            say(&format!("{input}: {more} (see --report)"));
+        if args.quads && !matches!(format, Obj | Ply) {
+            return Err(format!("--quads needs OBJ or PLY as output: {format} has triangles only"));
+        }
+        if args.json && *target == Target::Stdout {
+            return Err("--json and the mesh both go to standard output; use --report or -o".into());
+        }
+        if *target == Target::Stdout && args.output.is_none() && crate::exit::stdout_is_terminal() {
+            return Err("the mesh of standard input needs an output: use -o".into());
         }
     }
-    for sentence in report.error_sentences() {
-        say(&format!("{input}: problem: {sentence}"));
-    }
-}
-
-/// `tolerance 0.1 % = 0.2 mm, angle 20°, proven bound, 4 threads`.
-fn options_line(report: &Report) -> String {
-    let options = &report.options;
-    let tolerance = match options.tolerance_requested.ends_with('%') {
-        true => format!("{} = {}", options.tolerance_requested, length_mm(options.tolerance)),
-        false => length_mm(options.tolerance),
-    };
-    let angle = options.angle.map_or_else(|| "off".into(), |a| format!("{}°", number(a, 4)));
-    let max_edge = options.max_edge.map_or_else(String::new, |l| format!(", longest edge {}", length_mm(l)));
-    let threads = count(report.threads, "thread", "threads");
-    format!("tolerance {tolerance}, angle {angle}{max_edge}, {} bound, {threads}", options.bound)
-}
-
-/// `28 faces, 412 triangles, all 28 faces proven within 0.05 mm, gap 0 mm, watertight, 0.02 s`.
-fn result_line(report: &Report) -> String {
-    format!(
-        "{}, {}, {}, gap {}, {}, {:.2} s",
-        count(report.faces.total, "face", "faces"),
-        count(report.triangles, "triangle", "triangles"),
-        report.proof_sentence(),
-        length_mm(report.max_edge_gap),
-        report.closedness_sentence(),
-        report.seconds.total
-    )
-}
-
-/// Quadrilaterals are one strategy's, and not every format has them.
-fn check_quads(args: &MeshArgs) -> Result<(), String> {
     if args.quads && args.accuracy.strategy.strategy != Some(Strategy::Bezier) {
-        return Err("--quads needs --strategy bezier: the others make triangles only".into());
+        return Err("--quads needs --strategy bezier: other strategies make triangles only".into());
     }
     Ok(())
 }
@@ -148,7 +196,7 @@ fn check_report_path(args: &MeshArgs) -> Result<(), String> {
     let Some(path) = &args.report else { return Ok(()) };
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-            Err(format!("{}: there is no such folder to write the report to", path.display()))
+            Err(format!("{}: no such folder for the report", folder.display()))
         }
         _ if path.is_dir() => {
             Err(format!("{}: the report needs a file name, this is a folder", path.display()))
@@ -157,17 +205,7 @@ fn check_report_path(args: &MeshArgs) -> Result<(), String> {
     }
 }
 
-/// One report for one input, a batch for several; complete or not at all.
-fn write_report(args: &MeshArgs, batch: &Batch) -> Result<(), String> {
-    let Some(path) = &args.report else { return Ok(()) };
-    let text = match (&batch.reports[..], args.inputs.len()) {
-        ([only], 1) => only.to_json(),
-        _ => batch.to_json(),
-    };
-    chordal::write_whole(path, &text).map_err(|e| format!("{}: cannot write the report: {e}", path.display()))
-}
-
-/// The first Ctrl-C ends the work at the next face, the second at once; neither leaves a half-written file.
+/// The first Ctrl-C cancels at the next face, the second ends the program at once; neither leaves a half-written file.
 fn stop_on_ctrl_c(cancel: &Cancel) {
     let cancel = cancel.clone();
     let stop = move || {
@@ -177,6 +215,6 @@ fn stop_on_ctrl_c(cancel: &Cancel) {
         cancel.cancel();
     };
     if ctrlc::set_handler(stop).is_err() {
-        say("Ctrl-C cannot be caught here and ends the program at once");
+        say("Ctrl-C cannot be handled on this system and ends the program at once");
     }
 }

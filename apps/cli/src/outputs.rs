@@ -1,121 +1,226 @@
 //! Which file every input is written to.
 
 use crate::args::MeshArgs;
-use crate::batch::Batch;
-use std::collections::BTreeSet;
+use crate::inputs::Input;
+use chordal::{OutputFormat, Report};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
+
+/// Where the mesh of one input goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Standard output.
+    Stdout,
+    /// A file.
+    File(PathBuf),
+}
 
 /// Where the outputs go.
 #[derive(Debug)]
 pub struct Outputs {
-    files: Vec<PathBuf>,
+    targets: Vec<Target>,
+    /// The format of each.
+    formats: Vec<OutputFormat>,
     /// The folder, where this run made it.
     made: Option<PathBuf>,
-    /// All or nothing: the files are collected here first. The folder that they belong in.
-    staging: Option<(TempDir, PathBuf)>,
+    /// All or nothing: the files are collected here first. By the folder that they belong in.
+    staging: BTreeMap<PathBuf, TempDir>,
 }
 
 /// Plans one output per input.
 ///
-/// Inputs of one name in several folders get `name`, `name-2`, `name-3` …, in the order of the command line.
+/// Without `-o` a mesh lies beside its input, that of standard input goes to standard output. Meshes of one name in one
+/// folder get `name`, `name-2`, `name-3` …, in the order of the inputs.
 ///
 /// # Errors
-/// One sentence where the outputs cannot be: a folder without a format, several inputs for one file, a folder that
+/// One sentence where the outputs cannot be: several inputs for one file, an extension that names no format, a folder that
 /// is missing, an output that is one of the inputs.
-pub fn plan(args: &MeshArgs) -> Result<Outputs, String> {
-    let out = &args.output;
-    let says_folder = out.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
-    if !(says_folder || out.is_dir()) {
-        if args.inputs.len() > 1 {
-            return Err(format!("{}: {} inputs need a folder as output", out.display(), args.inputs.len()));
+pub fn plan(args: &MeshArgs, inputs: &[Input]) -> Result<Outputs, String> {
+    let mut made = None;
+    let (targets, formats) = match &args.output {
+        Some(out) if out.as_os_str() == "-" => one(inputs, args.format(), Target::Stdout, "-")?,
+        Some(out) if is_folder(out) => {
+            made = (!out.is_dir()).then(|| out.clone());
+            in_folder(out, inputs, args.format())?
         }
-        folder_exists(out.parent())?;
-        not_an_input(out, &args.inputs)?;
-        return Ok(Outputs { files: vec![out.clone()], made: None, staging: None });
-    }
-    let format = args
-        .format
-        .ok_or_else(|| format!("{}: a folder as output needs --format to say what to write", out.display()))?
-        .format();
-    let made = (!out.is_dir()).then(|| out.clone());
-    let failed = |e: std::io::Error| format!("{}: cannot write to the folder: {e}", out.display());
-    std::fs::create_dir_all(out).map_err(failed)?;
-    let mut taken = BTreeSet::new();
-    let names: Vec<String> =
-        args.inputs.iter().map(|i| free_name(i, format.extension(), &mut taken)).collect();
-    names.iter().try_for_each(|name| not_an_input(&out.join(name), &args.inputs))?;
-    let staging = if args.strict && args.inputs.len() > 1 {
-        let folder = tempfile::Builder::new().prefix(".chordal-").tempdir_in(out).map_err(failed)?;
-        Some((folder, out.clone()))
-    } else {
-        None
+        Some(out) => {
+            folder_exists(out.parent())?;
+            let format = args.format.map(|f| f.format()).or_else(|| by_extension(out));
+            let format = format.ok_or_else(|| {
+                format!(
+                    "{}: unsupported output extension (supported: stl, ply, obj, glb, gltf, 3mf)",
+                    out.display()
+                )
+            })?;
+            one(inputs, format, Target::File(out.clone()), &out.display().to_string())?
+        }
+        None => beside(inputs, args.format()),
     };
-    let folder = staging.as_ref().map_or(out.as_path(), |(staging, _)| staging.path());
-    Ok(Outputs { files: names.iter().map(|name| folder.join(name)).collect(), made, staging })
+    targets.iter().try_for_each(|target| not_an_input(target, inputs))?;
+    let mut outputs = Outputs { targets, formats, made, staging: BTreeMap::new() };
+    if args.strict && inputs.len() > 1 {
+        outputs.stage()?;
+    }
+    Ok(outputs)
+}
+
+type Plan = (Vec<Target>, Vec<OutputFormat>);
+
+fn is_folder(out: &Path) -> bool {
+    out.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]) || out.is_dir()
+}
+
+fn by_extension(path: &Path) -> Option<OutputFormat> {
+    path.extension().and_then(|e| e.to_str()).and_then(OutputFormat::from_extension)
+}
+
+fn one(inputs: &[Input], format: OutputFormat, target: Target, name: &str) -> Result<Plan, String> {
+    match inputs.len() {
+        1 => Ok((vec![target], vec![format])),
+        n => Err(format!("{name}: {n} inputs need a folder as output")),
+    }
+}
+
+fn in_folder(out: &Path, inputs: &[Input], format: OutputFormat) -> Result<Plan, String> {
+    let mut taken = BTreeSet::new();
+    let mut targets = Vec::with_capacity(inputs.len());
+    for input in inputs {
+        let below = match input {
+            Input::Stdin => Path::new("stdin"),
+            Input::File { below, .. } => below,
+        };
+        let path = free_path(&out.join(below), format.extension(), &mut taken);
+        let folder = path.parent().unwrap_or(out);
+        std::fs::create_dir_all(folder)
+            .map_err(|e| format!("{}: cannot make the folder: {e}", folder.display()))?;
+        targets.push(Target::File(path));
+    }
+    Ok((targets, vec![format; inputs.len()]))
+}
+
+fn beside(inputs: &[Input], format: OutputFormat) -> Plan {
+    let mut taken = BTreeSet::new();
+    let target = |input: &Input| match input {
+        Input::Stdin => Target::Stdout,
+        Input::File { path, .. } => {
+            Target::File(free_path(&path.with_extension(""), format.extension(), &mut taken))
+        }
+    };
+    (inputs.iter().map(target).collect(), vec![format; inputs.len()])
 }
 
 impl Outputs {
-    /// One per input.
-    pub fn files(&self) -> &[PathBuf] {
-        &self.files
+    /// One per input, with its format: where it goes in the end.
+    pub fn targets(&self) -> impl Iterator<Item = (&Target, OutputFormat)> {
+        self.targets.iter().zip(self.formats.iter().copied())
+    }
+
+    /// Where a file is to be written for now.
+    pub fn path_now(&self, path: &Path) -> PathBuf {
+        let staged = path.parent().and_then(|folder| self.staging.get(folder));
+        match (staged, path.file_name()) {
+            (Some(folder), Some(name)) => folder.path().join(name),
+            _ => path.to_owned(),
+        }
+    }
+
+    fn stage(&mut self) -> Result<(), String> {
+        for target in &self.targets {
+            let Target::File(path) = target else { continue };
+            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+            if !self.staging.contains_key(&folder) {
+                let there = if folder.as_os_str().is_empty() { Path::new(".") } else { &folder };
+                let made = tempfile::Builder::new().prefix(".chordal-").tempdir_in(there);
+                let made =
+                    made.map_err(|e| format!("{}: cannot write to the folder: {e}", there.display()))?;
+                self.staging.insert(folder, made);
+            }
+        }
+        Ok(())
     }
 
     /// Nothing was written: leaves no trace.
     pub fn discard(self) {
         drop(self.staging);
         if let Some(folder) = self.made {
-            // It stays where somebody else has put something in it.
-            let _ = std::fs::remove_dir(folder);
+            remove_empty(&folder);
         }
     }
 
-    /// Moves collected files to where they belong, and says so in the reports.
+    /// Moves collected files to where they belong.
     ///
     /// # Errors
     /// One sentence where a file cannot be moved.
-    pub fn settle(self, batch: &mut Batch) -> Result<(), String> {
-        let Some((staging, folder)) = self.staging else { return Ok(()) };
-        let failed = |e: std::io::Error| format!("{}: cannot write to the folder: {e}", folder.display());
-        for entry in std::fs::read_dir(staging.path()).map_err(failed)? {
-            let entry = entry.map_err(failed)?;
-            std::fs::rename(entry.path(), folder.join(entry.file_name())).map_err(failed)?;
-        }
-        for output in batch.reports.iter_mut().filter_map(|r| r.output.as_mut()) {
-            if let Some(name) = Path::new(&output.path).file_name() {
-                output.path = folder.join(name).display().to_string();
+    pub fn settle(self) -> Result<(), String> {
+        for (folder, staging) in &self.staging {
+            let failed = |e: std::io::Error| format!("{}: cannot write to the folder: {e}", folder.display());
+            for entry in std::fs::read_dir(staging.path()).map_err(failed)? {
+                let entry = entry.map_err(failed)?;
+                std::fs::rename(entry.path(), folder.join(entry.file_name())).map_err(failed)?;
             }
         }
         Ok(())
     }
 }
 
+/// Removes folders that have nothing in them; a folder that somebody else has put something in stays.
+fn remove_empty(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.path().is_dir() {
+            remove_empty(&entry.path());
+        }
+    }
+    let _ = std::fs::remove_dir(folder);
+}
+
 /// `stem.extension`, with a number where that is taken; names that differ only in case count as one.
-fn free_name(input: &Path, extension: &str, taken: &mut BTreeSet<String>) -> String {
-    let stem = input.file_stem().map_or_else(|| "mesh".into(), |s| s.to_string_lossy().into_owned());
-    let numbered =
-        |n: usize| if n == 1 { format!("{stem}.{extension}") } else { format!("{stem}-{n}.{extension}") };
+fn free_path(stem: &Path, extension: &str, taken: &mut BTreeSet<String>) -> PathBuf {
+    let name = stem.file_name().map_or_else(|| "mesh".into(), |s| s.to_string_lossy().into_owned());
+    let numbered = |n: usize| match n {
+        1 => stem.with_file_name(format!("{name}.{extension}")),
+        n => stem.with_file_name(format!("{name}-{n}.{extension}")),
+    };
     (1..)
         .map(numbered)
-        .find(|name| taken.insert(name.to_lowercase()))
+        .find(|path| taken.insert(path.to_string_lossy().to_lowercase()))
         .expect("there are more numbers than inputs")
 }
 
 fn folder_exists(folder: Option<&Path>) -> Result<(), String> {
     match folder {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-            Err(format!("{}: there is no such folder to write to", folder.display()))
+            Err(format!("{}: no such folder", folder.display()))
         }
         _ => Ok(()),
     }
 }
 
-fn not_an_input(output: &Path, inputs: &[PathBuf]) -> Result<(), String> {
+fn not_an_input(target: &Target, inputs: &[Input]) -> Result<(), String> {
+    let Target::File(output) = target else { return Ok(()) };
     let Ok(real) = output.canonicalize() else { return Ok(()) };
-    if inputs.iter().any(|input| input.canonicalize().is_ok_and(|i| i == real)) {
+    let is_output = |input: &Input| match input {
+        Input::Stdin => false,
+        Input::File { path, .. } => path.canonicalize().is_ok_and(|path| path == real),
+    };
+    if inputs.iter().any(is_output) {
         return Err(format!("{}: the output is one of the inputs", output.display()));
     }
     Ok(())
+}
+
+/// Adds the written file to a report, under its final name.
+pub fn add_output(
+    report: &mut Report,
+    target: &Target,
+    format: OutputFormat,
+    summary: &chordal::write::WriteSummary,
+) {
+    let path = match target {
+        Target::Stdout => "-".into(),
+        Target::File(path) => path.display().to_string(),
+    };
+    report.add_output(&path, format, summary);
 }
 
 #[cfg(test)]
@@ -125,10 +230,10 @@ mod tests {
     #[test]
     fn names_do_not_collide() {
         let mut taken = BTreeSet::new();
-        let names: Vec<String> = ["a/x.step", "b/X.stp", "x.p21", "y"]
+        let names: Vec<String> = ["o/x", "o/X", "o/x", "o/b/x", "o/y.v2"]
             .iter()
-            .map(|p| free_name(Path::new(p), "ply", &mut taken))
+            .map(|p| free_path(Path::new(p), "ply", &mut taken).to_string_lossy().replace('\\', "/"))
             .collect();
-        assert_eq!(names, ["x.ply", "X-2.ply", "x-3.ply", "y.ply"]);
+        assert_eq!(names, ["o/x.ply", "o/X-2.ply", "o/x-3.ply", "o/b/x.ply", "o/y.v2.ply"]);
     }
 }

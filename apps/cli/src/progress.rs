@@ -1,21 +1,25 @@
 //! Progress on standard error, where that is a terminal.
 
-use chordal::{OnProgress, Progress};
+use chordal::Phase;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::sync::Arc;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// A bar that follows one job; it draws nothing unless standard error is a terminal.
+/// Steps of the bar.
+const STEPS: u64 = 1000;
+
+/// A bar that follows one run; it draws nothing unless standard error is a terminal.
 #[derive(Debug)]
 pub struct Bar(ProgressBar);
 
 impl Bar {
+    /// A bar with the name of the input.
     pub fn new(name: &str, quiet: bool) -> Self {
         if quiet {
             return Self(ProgressBar::hidden());
         }
-        let bar = ProgressBar::new(0);
-        let style = ProgressStyle::with_template("{prefix} {msg:10} {wide_bar} {pos}/{len} faces {elapsed}")
+        let bar = ProgressBar::new(STEPS);
+        let style = ProgressStyle::with_template("{prefix} {msg:10} {wide_bar} {percent:>3} % {elapsed}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         bar.set_style(style);
         bar.set_prefix(name.to_owned());
@@ -23,22 +27,27 @@ impl Bar {
         Self(bar)
     }
 
-    /// What a job calls.
-    pub fn listener(&self) -> OnProgress {
+    /// Shows what is done at the moment.
+    pub fn phase(&self, what: &'static str) {
+        self.0.set_message(what);
+    }
+
+    /// What a mesher calls.
+    pub fn listener(&self) -> impl Fn(Phase, f64) -> ControlFlow<()> + Send + Sync + 'static {
         let bar = self.0.clone();
-        Arc::new(move |progress| match progress {
-            Progress::Reading => bar.set_message("reading"),
-            Progress::Sewing => bar.set_message("sewing"),
-            Progress::Measuring => bar.set_message("measuring"),
-            Progress::Meshing { done, faces } => {
-                bar.set_message("meshing");
-                bar.set_length(faces as u64);
-                bar.set_position(done as u64);
+        move |phase, fraction| {
+            bar.set_message(match phase {
+                Phase::Sewing => "sewing",
+                Phase::Measuring => "measuring",
+                Phase::Meshing => "meshing",
+                Phase::Auditing => "auditing",
+                _ => "",
+            });
+            if phase == Phase::Meshing {
+                bar.set_position((fraction * STEPS as f64) as u64);
             }
-            Progress::Auditing => bar.set_message("auditing"),
-            Progress::Writing => bar.set_message("writing"),
-            _ => (),
-        })
+            ControlFlow::Continue(())
+        }
     }
 }
 

@@ -4,59 +4,84 @@ use crate::exit::{Exit, say};
 use crate::render_args::RenderArgs;
 
 /// Says how to get a build that draws.
-#[cfg(not(feature = "render"))]
+#[cfg(not(feature = "gpu"))]
 pub fn run(_args: &RenderArgs) -> Exit {
     say(
-        "this build draws no pictures; build one that does with `cargo build --release -p chordal-cli --features render`",
+        "this build lacks the feature `gpu`; rebuild with `cargo build --release -p chordal-cli --features gpu`",
     );
     Exit::Nothing
 }
 
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 pub fn run(args: &RenderArgs) -> Exit {
     drawing::run(args)
 }
 
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 mod drawing {
     use super::{Exit, RenderArgs, say};
+    use crate::inputs::Input;
+    use crate::messages::error_sentence;
+    use crate::reading::read_model;
     use crate::render_args::{DeviceArg, ModeArg, NormalsArg, ProjectionArg, StyleArg, TrimArg};
+    use crate::whole_file::write_whole;
+    use chordal::brep::issue::words::{count, number};
     use chordal::gpu::{
         Background, DeviceChoice, Normals, Projection, RenderOptions, SectionPlane, Style, Trim, View,
     };
     use chordal::nurbs::DVec3;
-    use chordal::{RenderJob, RenderMode, Rendered};
+    use chordal::{Image, ImageRenderer, MeshOptions, Mesher, ReadOptions, RenderMode, Report};
 
     pub fn run(args: &RenderArgs) -> Exit {
-        let job = match job(args) {
-            Ok(job) => job,
+        match draw(args) {
+            Ok(report) if report.clean => Exit::Clean,
+            Ok(_) => Exit::Problems,
             Err(sentence) => {
                 say(&sentence);
-                return Exit::Nothing;
-            }
-        };
-        match chordal::render(&job) {
-            Ok(rendered) => {
-                if !args.quiet {
-                    tell(args, &rendered);
-                }
-                rendered.report.error_sentences().iter().for_each(|problem| say(problem));
-                if rendered.report.clean { Exit::Clean } else { Exit::Undone }
-            }
-            Err(error) => {
-                say(&error.to_string());
                 Exit::Nothing
             }
         }
     }
 
-    fn job(args: &RenderArgs) -> Result<RenderJob, String> {
+    fn draw(args: &RenderArgs) -> Result<Report, String> {
+        let options = picture(args)?;
+        // The device first: without one all else would be in vain.
+        let renderer = ImageRenderer::open(device(args)).map_err(|e| e.to_string())?;
+        let input = Input::of(&args.input);
+        let failed = |error: chordal::Error| error_sentence(&input.name(), &error);
+        let model = read_model(&input, None, &ReadOptions::default()).map_err(failed)?;
+        let mesher = Mesher::new(MeshOptions::default().with_tolerance(args.tolerance));
+        let meshed = mesher.mesh(&model).map_err(failed)?;
+        let mode = match args.mode {
+            ModeArg::Mesh => RenderMode::Mesh,
+            ModeArg::Nurbs => RenderMode::Nurbs,
+        };
+        let image = renderer.render(&meshed, mode, &options).map_err(|e| format!("{}: {e}", input.name()))?;
+        write_whole(&args.output, &image.png)
+            .map_err(|e| format!("{}: cannot write the file: {e}", args.output.display()))?;
+        let report = meshed.into_report();
+        if !args.quiet {
+            tell(args, &image, &report, renderer.device_name());
+        }
+        report.error_sentences().iter().for_each(|e| say(&format!("{}: problem: {e}", input.name())));
+        Ok(report)
+    }
+
+    fn device(args: &RenderArgs) -> DeviceChoice {
+        match args.device {
+            DeviceArg::Best => DeviceChoice::Best,
+            DeviceArg::Hardware => DeviceChoice::Hardware,
+            DeviceArg::Software => DeviceChoice::Software,
+        }
+    }
+
+    fn picture(args: &RenderArgs) -> Result<RenderOptions, String> {
         let of = |option: &str, reason: String| format!("--{option}: {reason}");
         let view: View = args.camera.parse().map_err(|e| of("camera", e))?;
         let background: Background = args.background.parse().map_err(|e| of("background", e))?;
         let section = args.section.as_deref().map(section).transpose().map_err(|e| of("section", e))?;
         let [width, height] = args.size.0;
-        let picture = RenderOptions::default()
+        Ok(RenderOptions::default()
             .with_size(width, height)
             .with_view(view)
             .with_projection(match args.projection {
@@ -82,24 +107,7 @@ mod drawing {
             .with_normals(match args.normals {
                 NormalsArg::Exact => Normals::Exact,
                 NormalsArg::Interpolated => Normals::Interpolated,
-            });
-        Ok(RenderJob {
-            input: args.input.clone(),
-            output: args.output.clone(),
-            mesh: chordal::JobOptions::default().with_tolerance(args.tolerance),
-            picture,
-            mode: match args.mode {
-                ModeArg::Mesh => RenderMode::Mesh,
-                ModeArg::Nurbs => RenderMode::Nurbs,
-            },
-            device: match args.device {
-                DeviceArg::Best => DeviceChoice::Best,
-                DeviceArg::Hardware => DeviceChoice::Hardware,
-                DeviceArg::Software => DeviceChoice::Software,
-            },
-            cancel: Default::default(),
-            on_progress: None,
-        })
+            }))
     }
 
     /// A normal and an offset: four numbers, millimetres.
@@ -114,22 +122,28 @@ mod drawing {
         }
     }
 
-    fn tell(args: &RenderArgs, rendered: &Rendered) {
-        let report = &rendered.report;
-        let what = match rendered.evaluated {
-            None => format!("{} triangles of {} faces", report.triangles, report.faces.total),
-            Some(e) if e.meshed > 0 => {
-                format!("{} points of {} faces ({} drawn as triangles)", e.points, e.drawn, e.meshed)
+    fn tell(args: &RenderArgs, image: &Image, report: &Report, device: &str) {
+        let what = match image.evaluated {
+            None => format!(
+                "{} of {}",
+                count(report.triangles, "triangle", "triangles"),
+                count(report.faces.total, "face", "faces")
+            ),
+            Some(e) => {
+                let triangles =
+                    if e.meshed > 0 { format!(" ({} drawn as triangles)", e.meshed) } else { String::new() };
+                let (points, faces) = (count(e.points, "point", "points"), count(e.drawn, "face", "faces"));
+                format!("{points} of {faces}{triangles}")
             }
-            Some(e) => format!("{} points of {} faces", e.points, e.drawn),
         };
-        say(&format!("{}: {what}, drawn by {}", args.output.display(), rendered.adapter));
-        if let Some(legend) = rendered.legend {
+        say(&format!("{}: {what}, drawn by {device}", args.output.display()));
+        if let Some(legend) = image.legend {
             let what = match args.style {
                 StyleArg::Curvature => "mean curvature, 1/mm",
                 _ => "distance from the exact surface, mm",
             };
-            say(&format!("colours from {:.3e} to {:.3e} ({what})", legend.low, legend.high));
+            let (low, high) = (number(f64::from(legend.low), 4), number(f64::from(legend.high), 4));
+            say(&format!("colours from {low} to {high} ({what})"));
         }
     }
 }

@@ -2,22 +2,24 @@
 
 use crate::args::{FormatArg, SewArgs};
 use crate::exit::{Exit, print, say};
-use chordal::{MeshSewing, MeshSewingReport};
+use chordal::brep::issue::words::{count, length_mm};
+use chordal::mesh_file::{MeshSewing, MeshSewingReport, sew_mesh_file};
 use std::fmt::Write;
 
-/// So many open borders are shown; JSON has more.
+/// At most so many open borders are shown; JSON has more.
 const SHOWN: usize = 8;
 
+/// Runs the command.
 pub fn run(args: &SewArgs) -> Exit {
     let options = MeshSewing::default()
         .with_tolerance(args.tolerance)
         .with_unit(args.unit)
         .with_format(args.format.map(FormatArg::format))
         .with_levels(args.levels);
-    match chordal::sew_mesh_file(&args.mesh, &args.output, &options) {
+    match sew_mesh_file(&args.mesh, &args.output, &options) {
         Ok(found) => {
             print(&if args.json { found.to_json() } else { text(&found) });
-            if found.open_after == 0 && found.inconsistent == 0 { Exit::Clean } else { Exit::Undone }
+            if found.open_after == 0 && found.inconsistent == 0 { Exit::Clean } else { Exit::Problems }
         }
         Err(error) => {
             say(&error.to_string());
@@ -33,56 +35,66 @@ fn text(found: &MeshSewingReport) -> String {
         None => String::new(),
         Some(auto) => {
             let sure = if auto.unambiguous { "" } else { ", ambiguous" };
-            format!(
-                " (resolution {:.1e}, no gaps from {:.1e} to {:.1e}{sure})",
-                auto.resolution, auto.empty_range[0], auto.empty_range[1]
-            )
+            let [low, high] = auto.empty_range.map(length_mm);
+            let resolution = length_mm(auto.resolution);
+            format!(" (resolution {resolution}, no gaps from {low} to {high}{sure})")
         }
     };
-    let _ = writeln!(out, "tolerance     {:.3e} mm{how}", found.tolerance);
+    let _ = writeln!(out, "tolerance     {}{how}", length_mm(found.tolerance));
     let _ = writeln!(out, "triangles     {} → {}", found.triangles_before, found.triangles);
+    let borders = count(found.borders, "border", "borders");
+    let _ = writeln!(out, "open edges    {} in {borders} → {}", found.open_before, found.open_after);
     let _ = writeln!(
         out,
-        "open edges    {} in {} borders → {}",
-        found.open_before, found.borders, found.open_after
+        "joined        {}, {} inserted, {} merged, {} rejected",
+        count(found.joined, "edge segment", "edge segments"),
+        count(found.inserted, "vertex", "vertices"),
+        found.merged,
+        found.rejected
     );
-    let _ = writeln!(
-        out,
-        "sewn          {} stretches, {} vertices inserted, {} merged, {} refused",
-        found.sewn, found.inserted, found.merged, found.refused
-    );
-    let _ = writeln!(out, "largest move  {:.3e} mm", found.largest_move);
+    let _ = writeln!(out, "largest move  {}", length_mm(found.largest_move));
     let _ = writeln!(out, "shells        {}, {} closed", found.shells, found.closed_shells);
-    let faults = [
-        (found.turned, "triangles turned over"),
-        (found.inconsistent, "inconsistent edges"),
-        (found.folded, "triangles folded"),
-        (found.degenerate, "triangles without area left out"),
-    ];
-    for (count, what) in faults.iter().filter(|f| f.0 > 0) {
-        let _ = writeln!(out, "              {count} {what}");
+    faults(&mut out, found);
+    borders_left(&mut out, found);
+    for level in &found.levels {
+        let triangles = count(level.triangles, "triangle", "triangles");
+        let _ = writeln!(
+            out,
+            "level         {}: {triangles}, error about {}",
+            level.path,
+            length_mm(level.error)
+        );
     }
+    out
+}
+
+fn faults(out: &mut String, found: &MeshSewingReport) {
+    let faults = [
+        (found.flipped, "triangle reversed", "triangles reversed"),
+        (found.inconsistent, "inconsistent edge", "inconsistent edges"),
+        (found.folded, "folded triangle", "folded triangles"),
+        (found.degenerate, "triangle without area removed", "triangles without area removed"),
+    ];
+    for (number, one, many) in faults.into_iter().filter(|f| f.0 > 0) {
+        let _ = writeln!(out, "              {}", count(number, one, many));
+    }
+}
+
+fn borders_left(out: &mut String, found: &MeshSewingReport) {
     for open in found.open.iter().take(SHOWN) {
         let nearest = open.nearest.map_or_else(
             || "no other border".into(),
-            |[low, high]| format!("{low:.3e} to {high:.3e} mm from the nearest"),
+            |[low, high]| format!("{} to {} from the nearest border", length_mm(low), length_mm(high)),
         );
         let [x, y, z] = open.at.map(|c| format!("{c:.4}"));
+        let edges = count(open.edges, "edge", "edges");
         let _ = writeln!(
             out,
-            "open          {} edges, {:.4} mm long, {nearest}, at ({x}, {y}, {z})",
-            open.edges, open.length
+            "open          {edges}, {} long, {nearest}, at ({x}, {y}, {z})",
+            length_mm(open.length)
         );
     }
     if found.open.len() > SHOWN {
         let _ = writeln!(out, "              and {} more", found.open.len() - SHOWN);
     }
-    for level in &found.levels {
-        let _ = writeln!(
-            out,
-            "level         {}: {} triangles, about {:.3e} mm off",
-            level.path, level.triangles, level.error
-        );
-    }
-    out
 }

@@ -5,6 +5,7 @@ mod common;
 use common::{chordal, corpus, files_in, json, model, run};
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 #[test]
 fn help_and_version_are_data() {
@@ -27,7 +28,7 @@ fn mistakes_are_one_sentence_and_exit_2() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out.stl");
     let bracket = model("bracket");
-    let cases: [(&str, &[&Path], &str); 16] = [
+    let cases: [(&str, &[&Path], &str); 20] = [
         ("mesh {} -o {} --tolerance 0", &[&bracket, &out], "greater than zero"),
         ("mesh {} -o {} --tolerance -1mm", &[&bracket, &out], "greater than zero"),
         ("mesh {} -o {} --tolerance 0.1furlong", &[&bracket, &out], "furlong"),
@@ -37,7 +38,11 @@ fn mistakes_are_one_sentence_and_exit_2() {
         ("mesh {} -o {} --jobs 0", &[&bracket, &out], "threads"),
         ("mesh {} -o {} --unit parsec", &[&bracket, &out], "parsec"),
         ("mesh {} -o {} --tollerance 1mm", &[&bracket, &out], "--tollerance"),
-        ("mesh {}", &[&bracket], "--output"),
+        ("mesh {} {} -o -", &[&bracket, &bracket], "folder"),
+        ("mesh {} -o - --json", &[&bracket], "--json"),
+        ("mesh {} -o {} --edges", &[&bracket, &out], "--edges"),
+        ("mesh {} -o {} --quads", &[&bracket, &out], "--quads"),
+        ("check {} --tolerance 1mm", &[&bracket], "--against"),
         ("mesh {} -o {}.xyz", &[&bracket], "{}.xyz"),
         ("mesh no-such-file.step -o {}", &[&out], "no-such-file.step"),
         ("mesh {} -o no-such-folder/out.stl", &[&bracket], "no-such-folder"),
@@ -58,7 +63,7 @@ fn a_tolerance_that_no_coordinate_can_hold_is_refused() {
     let out = folder.path().join("out.ply");
     let ran =
         run("mesh {} -o {} --tolerance 1e-18mm", &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
-    assert!(ran.stderr.contains("double-precision"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("below double precision"), "{}", ran.stderr);
     assert!(!out.exists());
 }
 
@@ -150,10 +155,9 @@ fn many_inputs_go_to_a_folder_without_collisions() {
     let slash = format!("{}/", out.display());
     let report = folder.path().join("r.json");
 
-    let ran = run("mesh {} {} -o {}", &[&model("bracket"), &twin, Path::new(&slash)])
-        .exits(&[2])
-        .says_one_sentence();
-    assert!(ran.stderr.contains("--format"), "{}", ran.stderr);
+    run("mesh {} {} -o {}", &[&model("bracket"), &twin, Path::new(&slash)]).exits(&[0]);
+    assert_eq!(files_in(&out), ["Bracket-2.glb", "bracket.glb"]);
+    fs::remove_dir_all(&out).expect("removed");
 
     let line = "mesh {} {} {} -o {} --format ply --report {}";
     run(line, &[&model("bracket"), &twin, &model("sphere_full"), Path::new(&slash), &report]).exits(&[0]);
@@ -240,4 +244,84 @@ fn an_unwritable_output_leaves_what_was_there() {
     run("mesh {} -o {}", &[&corpus().join("bad/not_step.step"), &out]).exits(&[2]).says_one_sentence();
     assert_eq!(fs::read_to_string(&out).expect("a file"), "before");
     chordal(["mesh"]).exits(&[2]).says_one_sentence();
+}
+
+#[test]
+fn without_an_output_the_mesh_lies_beside_its_input() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("part.v2.step");
+    fs::copy(model("bracket"), &copy).expect("a copy");
+    // The subcommand may be missing, too.
+    run("{} -q", &[&copy]).exits(&[0]);
+    run("mesh {} -q --format stl", &[&copy]).exits(&[0]);
+    assert_eq!(files_in(folder.path()), ["part.v2.glb", "part.v2.step", "part.v2.stl"]);
+    let glb = fs::read(folder.path().join("part.v2.glb")).expect("a mesh");
+    assert_eq!(&glb[..4], b"glTF");
+}
+
+#[test]
+fn standard_input_and_output_are_files_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("a.stl");
+    run("mesh {} -o {} -q", &[&model("bracket"), &file]).exits(&[0]);
+    let expected = fs::read(&file).expect("a mesh");
+    for line in [
+        "mesh - -o - --format stl -q",
+        "- --format stl -q",
+        "mesh - --input-format step --format stl -q -o -",
+    ] {
+        let input = fs::File::open(model("bracket")).expect("a model");
+        let args = line.split(' ');
+        let ran =
+            Command::new(env!("CARGO_BIN_EXE_chordal")).args(args).stdin(input).output().expect("it runs");
+        assert!(ran.status.success(), "{line}: {}", String::from_utf8_lossy(&ran.stderr));
+        assert!(ran.stdout == expected, "{line}");
+    }
+    assert_eq!(files_in(folder.path()), ["a.stl"]);
+}
+
+#[test]
+fn a_folder_is_an_input_and_keeps_its_tree() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let parts = folder.path().join("parts");
+    fs::create_dir_all(parts.join("left")).expect("folders");
+    fs::create_dir_all(parts.join("right")).expect("folders");
+    for name in ["left/bracket.step", "right/bracket.step", "ball.stp"] {
+        fs::copy(model("sphere_full"), parts.join(name)).expect("a copy");
+    }
+    fs::write(parts.join("notes.txt"), "no model").expect("a file");
+    let out = folder.path().join("out");
+    let slash = format!("{}/", out.display());
+    let ran = run("mesh {} -o {} --json -q", &[&parts, Path::new(&slash)]).exits(&[0]);
+    assert_eq!(files_in(&out), ["ball.glb", "left", "right"]);
+    assert_eq!(
+        (files_in(&out.join("left")), files_in(&out.join("right"))),
+        (vec!["bracket.glb".into()], vec!["bracket.glb".into()])
+    );
+    let batch: serde_json::Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!(batch["reports"].as_array().map(Vec::len), Some(3));
+    assert!(batch["reports"][0]["output"]["path"].as_str().is_some_and(|path| path.ends_with("ball.glb")));
+}
+
+#[test]
+fn completions_and_the_manual_page_are_made() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let ran = chordal(["completions", shell]).exits(&[0]);
+        assert!(ran.stdout.contains("chordal") && ran.stdout.contains("tolerance"), "{shell}");
+    }
+    let page = run("man", &[]).exits(&[0]).stdout;
+    assert!(page.contains(".TH chordal") && page.contains("boundary") && page.contains("OPTIONS"));
+}
+
+#[test]
+fn verbose_shows_the_stages() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("a.gltf");
+    let ran = run("mesh {} -o {} -v", &[&model("bracket"), &out]).exits(&[0]);
+    assert!(
+        ran.stderr.contains("audit") && ran.stderr.contains("all 28 faces proven within"),
+        "{}",
+        ran.stderr
+    );
+    assert!(fs::read_to_string(&out).expect("text").contains("\"asset\""));
 }

@@ -22,7 +22,7 @@ fn islands_are_not_closed() {
     let json = folder.path().join("apart.json");
     run("convert {} -o {} --unsewn", &[&model("bracket"), &json]).exits(&[0]);
     let said = run("info {}", &[&json]).exits(&[0]).stdout;
-    assert!(said.contains("face sets") && !said.contains("closed"), "{said}");
+    assert!(said.contains("face set") && !said.contains("closed"), "{said}");
 }
 
 #[test]

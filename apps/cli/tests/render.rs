@@ -5,18 +5,18 @@ mod common;
 use common::{model, run};
 
 /// Without the feature the program says how to get a build that draws, and writes nothing.
-#[cfg(not(feature = "render"))]
+#[cfg(not(feature = "gpu"))]
 #[test]
 fn a_build_without_pictures_says_how_to_get_one_with() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out.png");
     let ran = run("render {} -o {}", &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
-    assert!(ran.stderr.contains("--features render"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("--features gpu"), "{}", ran.stderr);
     assert!(!out.exists());
 }
 
 /// A picture is a PNG file, and the adapter that drew it is named.
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 #[test]
 fn a_picture_is_written_and_the_adapter_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -33,7 +33,7 @@ fn a_picture_is_written_and_the_adapter_named() {
     assert!(std::fs::read(&out).unwrap().starts_with(b"\x89PNG"));
 }
 
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 #[test]
 fn bad_options_are_one_sentence() {
     for options in

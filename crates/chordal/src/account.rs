@@ -9,7 +9,7 @@ pub(crate) use ledger::Ledger;
 use crate::auditing::AuditedPart;
 use crate::meshed_part::MeshedPart;
 use crate::names::{bound_name, loose_kind};
-use crate::options::JobOptions;
+use crate::options::MeshOptions;
 use crate::placement::PartUse;
 use crate::report::*;
 use crate::resolve::Resolved;
@@ -36,7 +36,7 @@ struct Entry<'a> {
 }
 
 /// Adds everything up. Times of the stages outside the parts are added by the ledger.
-pub(crate) fn account(input: InputReport, options: &JobOptions, found: &Findings<'_>) -> Report {
+pub(crate) fn account(input: InputReport, options: &MeshOptions, found: &Findings<'_>) -> Report {
     let mut report = Report {
         schema: REPORT_SCHEMA.into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -89,18 +89,19 @@ fn entries<'a>(found: &Findings<'a>) -> Vec<Entry<'a>> {
         .collect()
 }
 
-fn options_report(options: &JobOptions, resolved: &Resolved) -> OptionsReport {
+fn options_report(options: &MeshOptions, resolved: &Resolved) -> OptionsReport {
+    let mesher = options.mesher();
     OptionsReport {
         tolerance: resolved.tolerance,
-        tolerance_requested: options.tolerance.to_string(),
+        tolerance_requested: options.tolerance().to_string(),
         boundary_tolerance: resolved.boundary_tolerance,
-        angle: options.angle.map(f64::to_degrees),
-        max_edge: options.max_edge,
+        angle: mesher.angle.map(f64::to_degrees),
+        max_edge: mesher.max_edge,
         strategy: options.fill_method_name().into(),
         edge_method: options.edge_splitter_name().into(),
-        sewing: options.sew.to_string(),
-        bound: bound_name(options.bound).into(),
-        face_timeout: options.face_timeout.map(|t| t.as_secs_f64()),
+        sewing: options.sewing().to_string(),
+        bound: bound_name(mesher.bound).into(),
+        face_timeout: mesher.face_timeout.map(|t| t.as_secs_f64()),
     }
 }
 
@@ -159,9 +160,26 @@ pub(crate) fn loose(model: &Model) -> Vec<LooseEntry> {
     model.parts.iter().flat_map(of_part).collect()
 }
 
+/// What the reader repaired, guessed or dropped, and the faces that it could not read.
+pub(crate) fn model_problems(model: &Model) -> Vec<Problem> {
+    model.issues.iter().map(Problem::new).chain(unread_faces(model)).collect()
+}
+
+/// The faces that could not be read.
+fn unread_faces(model: &Model) -> impl Iterator<Item = Problem> {
+    let of_part = |part: &Part| -> Vec<Problem> {
+        let problem = |face: &chordal_brep::Face| {
+            face.failure().map(|issue| Problem::new(&issue.for_owner(face.source)).in_part(&part.name))
+        };
+        part.faces.iter().filter_map(problem).collect()
+    };
+    model.parts.iter().flat_map(of_part)
+}
+
 impl Report {
-    /// Adds the written file. What the rounding of the format may cost was charged to the error before.
-    pub(crate) fn add_output(&mut self, path: &str, format: chordal_write::Format, summary: &WriteSummary) {
+    /// Adds a written file. What the rounding of the format may cost was charged to the error before, where
+    /// [`MeshOptions::with_output_format`] names the format.
+    pub fn add_output(&mut self, path: &str, format: chordal_write::Format, summary: &WriteSummary) {
         self.output = Some(OutputReport {
             path: path.to_owned(),
             format: format.to_string(),

@@ -3,16 +3,15 @@
 mod measure;
 mod plot;
 
-use crate::job::read_model_with;
+use crate::error::Error;
 use crate::meshed_part::{MeshedPart, mesh_parts};
+use crate::model::Model;
+use crate::options::MeshOptions;
 use crate::report::StageEntry;
 use crate::resolve::{Resolved, resolve};
-use crate::{JobError, JobOptions};
-use chordal_brep::Model;
 use chordal_methods::StrategyEntry;
 use chordal_tessellate::{Bound, Cancel, Stopwatch};
 use serde::Serialize;
-use std::path::Path;
 
 pub use plot::plot;
 
@@ -22,21 +21,28 @@ pub const COMPARE_SCHEMA: &str = "chordal-compare/1";
 /// All strategies on one model; lengths in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Comparison {
+    /// [`COMPARE_SCHEMA`].
     pub schema: String,
+    /// The name of the model.
     pub model: String,
+    /// The tolerance.
     pub tolerance: f64,
     /// In degrees; `null`: no limit.
     pub angle: Option<f64>,
+    /// Faces, as placed.
     pub faces: usize,
     /// How edges became polylines.
     pub edge_method: String,
+    /// One row per strategy and bound.
     pub rows: Vec<ComparedRow>,
 }
 
 /// One strategy with one kind of bound.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ComparedRow {
+    /// The name of the strategy.
     pub strategy: String,
+    /// "proven" or "estimated".
     pub bound: String,
     /// As placed.
     pub triangles: usize,
@@ -50,11 +56,13 @@ pub struct ComparedRow {
     pub measured_error: f64,
     /// Triangles over the fewest that the tolerance allows (docs/report.md).
     pub ratio: f64,
+    /// Faces that failed, as placed.
     pub failed_faces: usize,
     /// Rounds in which faces asked for finer edges, the most of any part.
     pub rounds: usize,
     /// Which parts of the tessellator ran.
     pub stages: Vec<StageEntry>,
+    /// Time of the phases, for strategies by cells.
     pub phases: PhaseSeconds,
 }
 
@@ -63,6 +71,7 @@ pub struct ComparedRow {
 pub struct PhaseSeconds {
     /// Splines to the pieces that the strategy begins with.
     pub conversion: f64,
+    /// Subdividing.
     pub subdivision: f64,
     /// Following trimming curves over cells.
     pub traversal: f64,
@@ -70,25 +79,24 @@ pub struct PhaseSeconds {
     pub triangulation: f64,
 }
 
-/// Meshes the model in `input` once for every strategy and bound. The lower bound is that of the first row: it is a
+/// Meshes the model once for every strategy and bound. The lower bound is that of the first row: it is a
 /// property of the model, but for rounding.
 ///
 /// # Errors
 /// Where the model cannot be read or the options make no sense for it.
 pub fn compare(
-    input: &Path,
-    options: &JobOptions,
+    model: &Model,
+    options: &MeshOptions,
     strategies: &[&StrategyEntry],
     bounds: &[Bound],
     cancel: &Cancel,
     tell: &mut dyn FnMut(&ComparedRow),
-) -> Result<Comparison, JobError> {
-    let model = read_model_with(input, &options.read)?;
+) -> Result<Comparison, Error> {
     let mut comparison = Comparison {
         schema: COMPARE_SCHEMA.into(),
-        model: input.display().to_string(),
-        angle: options.angle.map(f64::to_degrees),
-        faces: model.placed_faces(),
+        model: model.name().to_owned(),
+        angle: options.mesher().angle.map(f64::to_degrees),
+        faces: model.face_count(),
         edge_method: options.edge_splitter_name().into(),
         ..Comparison::default()
     };
@@ -96,20 +104,21 @@ pub fn compare(
     for strategy in strategies {
         for &bound in bounds {
             let options = options.clone().with_fill_method(strategy.fill_method()).with_bound(bound);
-            let resolved = resolve(&model, &options, None, input, cancel)?;
+            let resolved =
+                resolve(model.brep(), &options, cancel).map_err(|error| error.named(model.name()))?;
             comparison.tolerance = resolved.tolerance;
             let clock = Stopwatch::of_process();
-            let parts = mesh_parts(&model, &resolved, cancel, &|_| ());
+            let parts = mesh_parts(model.brep(), &resolved, cancel, &|_| ());
             let seconds = clock.seconds();
             if cancel.is_cancelled() {
-                return Err(JobError::Cancelled { path: input.to_owned() });
+                return Err(Error::Cancelled);
             }
             let fewest = *lower_bound.get_or_insert_with(|| fewest(&resolved, &parts));
             let row = ComparedRow {
                 strategy: strategy.name.into(),
                 bound: crate::names::bound_name(bound).into(),
                 seconds,
-                ..row(&model, &resolved, &parts, fewest)
+                ..row(model.brep(), &resolved, &parts, fewest)
             };
             tell(&row);
             comparison.rows.push(row);
@@ -133,7 +142,7 @@ fn fewest(resolved: &Resolved, parts: &[MeshedPart]) -> f64 {
         .sum()
 }
 
-fn row(model: &Model, resolved: &Resolved, parts: &[MeshedPart], fewest: f64) -> ComparedRow {
+fn row(model: &chordal_brep::Model, resolved: &Resolved, parts: &[MeshedPart], fewest: f64) -> ComparedRow {
     let mut row = ComparedRow { proven_error: Some(0.0), ..ComparedRow::default() };
     for (i, part, instances, scale) in placed(resolved, parts) {
         row.triangles += instances * part.mesh.triangle_count();

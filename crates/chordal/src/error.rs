@@ -1,61 +1,158 @@
-//! Why a job wrote nothing; each message is one sentence.
+//! Why there is no mesh: the request, the file, or a bug.
 
+use crate::report::Problem;
+use chordal_brep::Source;
+use chordal_brep::issue::words::{count, length_mm, number};
+use chordal_document::DocumentError;
+use chordal_mesh::ImportError;
 use chordal_read::ReadError;
 use chordal_write::WriteError;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Why a job wrote nothing.
+/// Why there is no mesh. Each message is one sentence.
+///
+/// A face that fails is no error: the [`Report`](crate::Report) lists it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum JobError {
-    #[error("{}", read_sentence(path, source))]
-    Read { path: PathBuf, source: ReadError },
-    #[error("{}: {source}", path.display())]
-    Write { path: PathBuf, source: WriteError },
-    #[error("{}: {source}", path.display())]
-    Mesh { path: PathBuf, source: chordal_mesh::ImportError },
-    #[error("{}: {reason}", path.display())]
-    Output { path: PathBuf, reason: String },
-    #[error("{}: the file holds no face and no triangle{}", path.display(), but_holds(.loose))]
-    Empty { path: PathBuf, loose: usize },
+pub enum Error {
+    /// What the caller requested is not possible.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+    /// The file cannot be used.
+    #[error("{name}: {reason}")]
+    File {
+        /// The path of the file, or the name that the caller gave.
+        name: String,
+        /// What is wrong with it.
+        reason: FileError,
+    },
+    /// The caller cancelled, by [`Cancel`](crate::Cancel) or by the progress callback.
+    #[error("cancelled")]
+    Cancelled,
+    /// A bug in Chordal.
+    #[error("internal error, please report it at {}/issues: {message}", env!("CARGO_PKG_REPOSITORY"))]
+    Bug {
+        /// What the failed assertion says.
+        message: String,
+    },
+}
+
+/// What the caller requested is not possible.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RequestError {
+    /// The tolerance is finer than double-precision coordinates of this size can represent; lengths in millimetres.
     #[error(
-        "{}: a tolerance of {tolerance} mm is below {floor:.1e} mm, the finest that double-precision coordinates of this size can keep",
-        path.display()
+        "tolerance {} is below double precision for this model (minimum {})",
+        length_mm(*.tolerance),
+        length_mm(*.minimum)
     )]
-    BelowFloor { path: PathBuf, tolerance: f64, floor: f64 },
-    #[error("{}: {at}: a coordinate of {reach:.1e} is too large to be meant", path.display())]
-    TooLarge { path: PathBuf, at: String, reach: f64 },
-    #[error("{}: none of {faces} faces could be meshed: {first}", path.display())]
-    NothingMeshed { path: PathBuf, faces: usize, first: String },
-    #[error("{}: nothing was written because of --strict: {}", path.display(), first_of(.problems))]
-    Strict { path: PathBuf, problems: Vec<String> },
-    #[error("{}: cancelled", path.display())]
-    Cancelled { path: PathBuf },
-    #[error("no pool of {threads} threads: {reason}")]
-    Threads { threads: usize, reason: String },
+    ToleranceTooFine {
+        /// The requested tolerance.
+        tolerance: f64,
+        /// The smallest one that is possible.
+        minimum: f64,
+    },
+    /// The extension of the output is not that of a format that can be written.
+    #[error("{}: unsupported output extension (supported: {})", path.display(), supported)]
+    OutputExtension {
+        /// The path of the output.
+        path: PathBuf,
+        /// The extensions that are supported.
+        supported: &'static str,
+    },
+    /// The mesh cannot be written.
+    #[error("{}", write_sentence(path, source))]
+    Write {
+        /// The path of the output; empty where the mesh goes to memory.
+        path: PathBuf,
+        /// Why.
+        source: WriteError,
+    },
+    /// The build lacks a feature.
+    #[error("this build of Chordal lacks the feature `{feature}`")]
+    MissingFeature {
+        /// The name of the feature.
+        feature: &'static str,
+    },
 }
 
-/// The reader names the file only where it cannot open it.
-fn read_sentence(path: &Path, source: &ReadError) -> String {
-    if matches!(source, ReadError::Io { .. }) {
-        source.to_string()
+/// What is wrong with a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileError {
+    /// The system does not let us read it.
+    #[error("cannot read the file: {0}")]
+    Io(#[from] std::io::Error),
+    /// Its content yields no model. A file that cannot be opened is [`FileError::Io`].
+    #[error(transparent)]
+    Read(ReadError),
+    /// It is no mesh that can be read.
+    #[error(transparent)]
+    Mesh(ImportError),
+    /// The model cannot be written as a document.
+    #[error(transparent)]
+    Document(DocumentError),
+    /// It holds neither a face nor a triangle.
+    #[error("the file has no faces and no triangles{}", only_loose(*.loose))]
+    NoFaces {
+        /// Wires and points that belong to no face.
+        loose: usize,
+    },
+    /// A coordinate is so large that it must be a mistake.
+    #[error("{entity}: coordinate {} is out of range", number(*.coordinate, 4))]
+    CoordinateOutOfRange {
+        /// The vertex.
+        entity: Source,
+        /// The largest coordinate, in the units of its part.
+        coordinate: f64,
+    },
+    /// Not one face could be meshed.
+    #[error("none of {} could be meshed{}", count(*.faces, "face", "faces"), first_of(problems))]
+    NothingMeshed {
+        /// How many faces there are, as placed.
+        faces: usize,
+        /// Why.
+        problems: Vec<Problem>,
+    },
+}
+
+impl From<ReadError> for FileError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Io { source, .. } => FileError::Io(source),
+            other => FileError::Read(other),
+        }
+    }
+}
+
+impl Error {
+    pub(crate) fn file(name: &str, reason: FileError) -> Self {
+        Error::File { name: name.to_owned(), reason }
+    }
+}
+
+fn only_loose(loose: usize) -> String {
+    if loose == 0 {
+        String::new()
     } else {
-        format!("{}: {source}", path.display())
+        format!(", only {}", count(loose, "loose wire or point", "loose wires and points"))
     }
 }
 
-fn but_holds(loose: &usize) -> String {
-    match loose {
-        0 => String::new(),
-        1 => ", only a loose wire or point".into(),
-        n => format!(", only {n} loose wires and points"),
-    }
-}
-
-fn first_of(problems: &[String]) -> String {
+fn first_of(problems: &[Problem]) -> String {
     match problems {
-        [] => "the mesh has problems".into(),
-        [one] => one.clone(),
-        [first, rest @ ..] => format!("{first} (and {} more)", rest.len()),
+        [] => ": they have no area, or are never placed".into(),
+        [one] => format!(": {}", one.sentence()),
+        [first, rest @ ..] => format!(": {} (and {} more)", first.sentence(), rest.len()),
+    }
+}
+
+/// A sentence about a file names it once.
+fn write_sentence(path: &std::path::Path, source: &WriteError) -> String {
+    match source {
+        WriteError::File { .. } => source.to_string(),
+        _ if path.as_os_str().is_empty() => source.to_string(),
+        _ => format!("{}: {source}", path.display()),
     }
 }

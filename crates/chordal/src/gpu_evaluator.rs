@@ -45,6 +45,7 @@ impl GpuEvaluator {
         Self { fewest, ..self }
     }
 
+    /// The device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }

@@ -1,6 +1,6 @@
 //! What is in a CAD file, before anything is meshed.
 
-use crate::account::loose;
+use crate::account::{loose, model_problems};
 use crate::gaps::{Gap, gaps};
 use crate::names::face_kind;
 use crate::placement::{PartUse, part_uses};
@@ -23,7 +23,9 @@ const FACE_TIMEOUT: Duration = Duration::from_secs(10);
 /// What is in a file. Lengths are millimetres; counts of the whole are as placed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Info {
+    /// [`INFO_SCHEMA`].
     pub schema: &'static str,
+    /// Its name.
     pub name: String,
     /// Format and version as the file states them.
     pub format: String,
@@ -31,6 +33,7 @@ pub struct Info {
     pub unit: String,
     /// The tight axis-aligned box: its lowest and its highest corner; `null` where nothing is placed.
     pub r#box: Option<[[f64; 3]; 2]>,
+    /// The diagonal of the box.
     pub diagonal: f64,
     /// As placed.
     pub faces: usize,
@@ -38,9 +41,13 @@ pub struct Info {
     pub faces_by_kind: BTreeMap<&'static str, usize>,
     /// Faces that could not be read, as placed; `problems` says why.
     pub failed_faces: usize,
+    /// The largest gaps of all parts.
     pub max_gap: GapInfo,
+    /// Every part of the file.
     pub parts: Vec<PartInfo>,
+    /// The assembly, from its roots.
     pub tree: Vec<NodeInfo>,
+    /// Curves and points that belong to no face.
     pub loose: Vec<LooseEntry>,
     /// What the reader repaired, guessed or dropped, and the faces that it could not read.
     pub problems: Vec<Problem>,
@@ -49,30 +56,46 @@ pub struct Info {
 /// The largest gaps, each with the entity it was found at; measured at samples.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct GapInfo {
+    /// Between a vertex and the end of an edge's curve.
     pub vertex_to_curve: f64,
+    /// The edge.
     pub vertex_to_curve_at: Option<String>,
+    /// Between an edge's curve and the surface of a face that it bounds.
     pub curve_to_surface: f64,
+    /// The edge.
     pub curve_to_surface_at: Option<String>,
 }
 
 /// One part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartInfo {
+    /// Its name.
     pub name: String,
+    /// The entity in the file, `#123`.
     pub entity: Option<String>,
+    /// How often it is placed.
     pub instances: usize,
+    /// Solid bodies.
     pub solids: usize,
+    /// Sheet bodies.
     pub sheets: usize,
+    /// Groups of faces without a shell.
     pub face_sets: usize,
+    /// All shells.
     pub shells: usize,
+    /// Those that the file declares closed.
     pub closed_shells: usize,
+    /// Its faces.
     pub faces: usize,
+    /// Its edges.
     pub edges: usize,
+    /// Its vertices.
     pub vertices: usize,
     /// Triangles that are in the file already.
     pub tessellated_triangles: usize,
     /// The file's own statement of accuracy, in the part's units.
     pub uncertainty: Option<f64>,
+    /// Its largest gaps.
     pub gaps: GapInfo,
     /// Edges that one face alone uses.
     pub open_edges: usize,
@@ -85,14 +108,16 @@ pub struct PartInfo {
 /// One occurrence in the assembly tree.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodeInfo {
+    /// Its name.
     pub name: String,
     /// Index into `parts`.
     pub part: Option<usize>,
+    /// What is below it.
     pub children: Vec<NodeInfo>,
 }
 
 /// Looks at everything in a model.
-pub fn info(model: &Model) -> Info {
+pub(crate) fn info(model: &Model) -> Info {
     let uses = part_uses(model);
     let whole = tight_box(model, &uses, edge_box(model, &uses), Some(FACE_TIMEOUT), &Cancel::default());
     let parts: Vec<PartInfo> =
@@ -117,7 +142,7 @@ pub fn info(model: &Model) -> Info {
         parts,
         tree: model.roots.iter().map(|&root| node_info(model, root)).collect(),
         loose: loose(model),
-        problems: model.issues.iter().map(Problem::new).chain(failed(model)).collect(),
+        problems: model_problems(model),
     }
 }
 
@@ -164,17 +189,6 @@ fn largest(parts: &[PartInfo]) -> GapInfo {
         }
     }
     found
-}
-
-/// The faces that could not be read.
-fn failed(model: &Model) -> impl Iterator<Item = Problem> {
-    let of_part = |part: &Part| -> Vec<Problem> {
-        let problem = |face: &chordal_brep::Face| {
-            face.failure().map(|issue| Problem::new(&issue.for_owner(face.source)).in_part(&part.name))
-        };
-        part.faces.iter().filter_map(problem).collect()
-    };
-    model.parts.iter().flat_map(of_part)
 }
 
 /// A tree of ordinary depth; readers refuse cycles.

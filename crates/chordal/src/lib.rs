@@ -1,46 +1,65 @@
-//! CAD geometry in, proven watertight meshes out: the one crate that a user adds.
+//! CAD geometry in, watertight triangle meshes with a proven error out.
+//!
+//! Read a model, mesh it, use the triangles:
 //!
 //! ```
-//! use chordal::{Job, JobOptions, Tolerance};
+//! use chordal::{Closedness, MeshOptions, Mesher, Model, Tolerance};
 //!
-//! let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.05));
-//! let report = chordal::run(&Job::new("../../corpus/bracket.step").with_options(options))?.report;
-//! assert!(report.clean && report.closedness == Some(chordal::Closedness::Closed));
+//! let model = Model::open("../../corpus/bracket.step")?;
+//! let options = MeshOptions::default().with_tolerance(Tolerance::Millimetres(0.05));
+//! let meshed = Mesher::new(options).mesh(&model)?;
+//!
+//! for triangle in meshed.triangles() {
+//!     let _ = (triangle.face, triangle.positions, triangle.uv, triangle.normals);
+//! }
+//! let report = meshed.report();
+//! assert!(report.clean && report.closedness == Some(Closedness::Closed));
 //! assert!(report.proven_error.is_some_and(|error| error <= 0.05));
-//! println!("{} triangles for {} faces", report.triangles, report.faces.total);
-//! # Ok::<(), chordal::JobError>(())
+//! # Ok::<(), chordal::Error>(())
 //! ```
 //!
-//! `Job::with_output` writes the mesh; `Outcome::scene` holds it in memory. The parts of the pipeline are re-exported
-//! and can be used alone: [`nurbs`], [`brep`], [`read`], [`mod@tessellate`], [`audit`], [`mesh`], [`write`](mod@write).
+//! [`Model::from_bytes`] and [`Meshed::to_bytes`] do the same without a file. Nothing here needs a thread, a clock or a
+//! file system, so the crate also runs on `wasm32-unknown-unknown`. Work is shared among the threads of the current
+//! rayon pool; the result is the same bytes for any number of threads.
+//!
+//! # Features
+//!
+//! | feature | default | what it adds |
+//! |---|---|---|
+//! | `step`, `iges`, `brep`, `rhino`, `scene`, `obj` | yes | readers: STEP; IGES; OpenCASCADE BREP; Rhino 3DM; Open Inventor, VRML and X3D; free-form OBJ. JSON is always read |
+//! | `gpu` | no | pictures of models, and faces evaluated on a device (wgpu) |
+//! | `methods` | no | published methods that fill faces and cut edges, by name, and their comparison |
+//! | `levels` | no | coarser levels of sewn meshes (needs a C++ compiler) |
+//!
+//! The crates of the pipeline can be used alone: [`nurbs`], [`brep`], [`read`], [`sew`], [`mod@tessellate`], [`audit`],
+//! [`mesh`], [`write`](mod@write), [`document`].
+#![deny(missing_docs)]
 
 mod account;
-mod against;
 mod analytic;
 mod area;
 mod auditing;
-mod check;
-mod clock;
+mod bug;
 #[cfg(feature = "methods")]
-mod compare;
-mod convert;
-mod drawing;
+pub mod compare;
 mod edge_count;
 mod error;
 mod gaps;
 #[cfg(feature = "gpu")]
 mod gpu_evaluator;
 mod info;
-mod job;
 mod levels;
-mod mesh_sewing;
+pub mod math;
+pub mod mesh_file;
+mod meshed;
 mod meshed_part;
+mod mesher;
+mod model;
 mod names;
 mod options;
 #[cfg(feature = "methods")]
-mod papers;
+pub mod papers;
 mod placement;
-mod process;
 mod progress;
 mod quantity;
 #[cfg(feature = "gpu")]
@@ -49,39 +68,27 @@ pub mod report;
 mod resolve;
 mod scene;
 mod sewing;
+pub mod stages;
 mod tight_box;
-mod whole_file;
 
-pub use against::{AgainstReport, WorstFace};
-pub use area::area;
-pub use check::{CHECK_SCHEMA, CheckReport, check_mesh};
-#[cfg(feature = "methods")]
-pub use compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, compare, plot};
-pub use convert::{ConvertOptions, Converted, convert};
-pub use error::JobError;
+pub use error::{Error, FileError, RequestError};
 #[cfg(feature = "gpu")]
 pub use gpu_evaluator::GpuEvaluator;
-pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo, info};
-pub use job::{Job, Outcome, read_model, read_model_with, run, thread_pool};
-pub use mesh_sewing::{LevelEntry, MeshSewing, MeshSewingReport, OpenBorderEntry, SEW_SCHEMA, sew_mesh_file};
-pub use meshed_part::{MeshedPart, mesh_parts};
-pub use options::JobOptions;
-#[cfg(feature = "methods")]
-pub use papers::{LoopEntry, PaperTables, SurfaceEntry, paper_tables};
-pub use placement::{PartUse, part_uses};
-pub use process::peak_memory;
-pub use progress::{OnProgress, Progress};
+pub use info::{GapInfo, INFO_SCHEMA, Info, NodeInfo, PartInfo};
+pub use meshed::{Meshed, MeshedFace, Polyline, Triangle};
+pub use mesher::Mesher;
+pub use model::Model;
+pub use options::MeshOptions;
+pub use progress::Phase;
 pub use quantity::{QuantityError, Tolerance, parse_angle, parse_length};
 #[cfg(feature = "gpu")]
-pub use render::{Evaluated, RenderError, RenderJob, RenderMode, Rendered, render};
-pub use report::{Closedness, GapSurvey, OpenEntry, Problem, REPORT_SCHEMA, Report, SewingEntry, StageEntry};
-pub use resolve::{Resolved, resolve};
-pub use sewing::{Sew, sew_model};
-pub use tight_box::{TightBox, edge_box, tight_box};
-pub use whole_file::write_whole;
+pub use render::{Evaluated, Image, ImageRenderer, RenderMode};
+pub use report::{Closedness, Problem, REPORT_SCHEMA, Report};
+pub use sewing::Sewing;
 
 pub use chordal_audit as audit;
 pub use chordal_brep as brep;
+pub use chordal_brep::Severity;
 pub use chordal_document as document;
 #[cfg(feature = "gpu")]
 pub use chordal_gpu as gpu;
@@ -90,9 +97,9 @@ pub use chordal_mesh as mesh;
 pub use chordal_methods as methods;
 pub use chordal_nurbs as nurbs;
 pub use chordal_read as read;
-pub use chordal_read::{ReadOptions, Winding};
+pub use chordal_read::{Format as InputFormat, ReadOptions, Winding};
 pub use chordal_sew as sew;
 pub use chordal_tessellate as tessellate;
-pub use chordal_tessellate::{Bound, Bulk, Cancel};
+pub use chordal_tessellate::{Bound, Cancel};
 pub use chordal_write as write;
-pub use chordal_write::{Format, Unit, UpAxis};
+pub use chordal_write::{Format as OutputFormat, Unit, UpAxis, WriteOptions};

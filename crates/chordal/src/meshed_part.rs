@@ -1,6 +1,6 @@
 //! The parts of a model, each meshed once however often it is placed.
 
-use crate::progress::{FaceCounter, Progress};
+use crate::progress::FaceCounter;
 use crate::report::StageEntry;
 use crate::resolve::Resolved;
 use chordal_brep::Model;
@@ -12,7 +12,9 @@ use std::sync::Arc;
 /// The mesh of one part, and what is known about it; lengths in the part's own units.
 #[derive(Clone, Debug, Default)]
 pub struct MeshedPart {
+    /// Its triangles.
     pub mesh: Arc<PartMesh>,
+    /// What was done to its faces and edges.
     pub report: PartReport,
 }
 
@@ -32,14 +34,14 @@ impl MeshedPart {
     }
 }
 
-/// Meshes every placed part once, in parallel; the result does not depend on the number of threads.
+/// Meshes every placed part once, in parallel; `tell` receives the fraction that is done. The result does not depend on the number of threads.
 ///
 /// One per part of the model, in its order; a part that is never placed has an empty mesh.
-pub fn mesh_parts(
+pub(crate) fn mesh_parts(
     model: &Model,
     resolved: &Resolved,
     cancel: &Cancel,
-    tell: &(dyn Fn(Progress) + Sync),
+    tell: &(dyn Fn(f64) + Sync),
 ) -> Vec<MeshedPart> {
     let counter = FaceCounter::start(model, resolved, tell);
     model

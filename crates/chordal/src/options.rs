@@ -1,172 +1,161 @@
-//! What a job is asked for, in millimetres and radians.
+//! What the caller requests of a mesh.
 
-use crate::{Sew, Tolerance};
-use chordal_read::ReadOptions;
+use crate::quantity::Tolerance;
+use crate::sewing::Sewing;
 use chordal_tessellate::method::{EdgeSplitter, FillMethod};
-use chordal_tessellate::{Bound, Bulk};
-use chordal_write::{Format, Unit, UpAxis};
-use std::path::PathBuf;
+use chordal_tessellate::{Bound, Bulk, Options};
+use chordal_write::Format;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What is asked of a whole job.
+/// Angle between neighbouring normals that most users expect of a mesh.
+const ANGLE_DEGREES: f64 = 20.0;
+
+/// A face that takes longer is reported as failed; real faces take milliseconds.
+const FACE_TIMEOUT: Duration = Duration::from_secs(60);
+
+/// What the caller requests of a mesh.
+///
+/// Lengths are millimetres, angles radians. The options of the mesher itself are declared in
+/// [`tessellate::Options`](chordal_tessellate::Options); this type adds what concerns a whole model.
 ///
 /// ```
-/// use chordal::{JobOptions, Tolerance};
-/// let options = JobOptions::default().with_tolerance(Tolerance::Millimetres(0.05)).with_angle(None);
-/// assert!(!options.strict);
+/// use chordal::{MeshOptions, Tolerance};
+/// let options = MeshOptions::default().with_tolerance(Tolerance::Millimetres(0.05)).with_angle(None);
+/// assert_eq!(options.tolerance(), Tolerance::Millimetres(0.05));
 /// ```
 #[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct JobOptions {
-    pub tolerance: Tolerance,
-    /// Largest distance between edges and their chords; `None`: as `tolerance`. Facets that touch an edge may be as far off
-    /// as the larger of the two.
-    pub boundary_tolerance: Option<Tolerance>,
-    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians.
-    pub angle: Option<f64>,
-    /// Longest mesh edge, in millimetres.
-    pub max_edge: Option<f64>,
-    /// A method that fills faces, in place of the default one (feature `methods` has some).
-    pub fill_method: Option<Arc<dyn FillMethod>>,
-    /// Write the quadrilaterals of the fill method as such, where it makes some and the format has them (OBJ, PLY).
-    pub quads: bool,
-    /// A method that cuts edges into chords, in place of the default one.
-    pub edge_splitter: Option<Arc<dyn EdgeSplitter>>,
-    /// What to make of what the file leaves open.
-    pub read: ReadOptions,
-    /// Whether loose faces are sewn before they are meshed.
-    pub sew: Sew,
-    pub bound: Bound,
-    /// Who evaluates many points of one surface at once; a GPU by `GpuEvaluator` (feature `gpu`).
-    pub bulk: Bulk,
-    /// Threads; `None`: one per core. The result is the same bytes for any number.
-    pub jobs: Option<usize>,
-    /// Write nothing unless everything was done.
-    pub strict: bool,
-    /// Time after which a face is given up. A face that is given up depends on the machine: the only thing that does.
-    pub face_timeout: Option<Duration>,
-    /// The format of the output; `None`: by its extension.
-    pub format: Option<Format>,
-    /// The unit of the output; `None`: the format's own (metres in GLB, millimetres in the others).
-    pub unit: Option<Unit>,
-    /// The axis of the output that points up; `None`: the format's own (Y in GLB, as in the model in the others).
-    pub up: Option<UpAxis>,
-    /// Write the edges as lines too, where the format can.
-    pub edges: bool,
-    /// Draw every face in its plane of parameters into this folder.
-    pub debug_svg: Option<PathBuf>,
+pub struct MeshOptions {
+    tolerance: Tolerance,
+    boundary_tolerance: Option<Tolerance>,
+    sewing: Sewing,
+    output_format: Option<Format>,
+    /// Lengths are millimetres; its own tolerances are set for each part.
+    mesher: Options,
 }
 
-impl Default for JobOptions {
+impl Default for MeshOptions {
+    /// 0.1 % of the diagonal of the model, 20 degrees, 60 seconds a face.
     fn default() -> Self {
+        let mesher = Options::new(0.0)
+            .with_angle(Some(ANGLE_DEGREES.to_radians()))
+            .with_face_timeout(Some(FACE_TIMEOUT));
         Self {
             tolerance: Tolerance::default(),
             boundary_tolerance: None,
-            angle: Some(20_f64.to_radians()),
-            max_edge: None,
-            fill_method: None,
-            quads: false,
-            edge_splitter: None,
-            read: ReadOptions::default(),
-            sew: Sew::default(),
-            bound: Bound::Proven,
-            bulk: Bulk::default(),
-            jobs: None,
-            strict: false,
-            face_timeout: Some(Duration::from_secs(60)),
-            format: None,
-            unit: None,
-            up: None,
-            edges: false,
-            debug_svg: None,
+            sewing: Sewing::default(),
+            output_format: None,
+            mesher,
         }
     }
 }
 
-impl JobOptions {
-    /// The name of the fill method, `default` where there is none.
-    pub fn fill_method_name(&self) -> &str {
-        self.fill_method.as_ref().map_or("default", |method| method.name())
-    }
-    /// The name of the edge method, `default` where there is none.
-    pub fn edge_splitter_name(&self) -> &str {
-        self.edge_splitter.as_ref().map_or("default", |method| method.name())
-    }
+/// Setters of options that the mesher declares.
+macro_rules! mesher_options {
+    ($($(#[doc = $text:literal])* $name:ident($value:ident: $type:ty);)*) => {
+        impl MeshOptions {
+            $($(#[doc = $text])*
+            pub fn $name(mut self, $value: $type) -> Self {
+                self.mesher = self.mesher.$name($value);
+                self
+            })*
+        }
+    };
+}
+
+mesher_options! {
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians; `None` is no
+    /// limit. Default: 20 degrees.
+    with_angle(radians: Option<f64>);
+    /// Longest mesh edge in millimetres; `None`, the default, is no limit.
+    with_max_edge(millimetres: Option<f64>);
+    /// Whether errors are proven by upper bounds, the default, or estimated from samples.
+    with_bound(bound: Bound);
+    /// A method that fills faces, in place of the default one; the feature `methods` has some.
+    with_fill_method(method: Option<Arc<dyn FillMethod>>);
+    /// A method that cuts edges into chords, in place of the default one; the feature `methods` has some.
+    with_edge_splitter(splitter: Option<Arc<dyn EdgeSplitter>>);
+    /// Keep the quadrilaterals that the fill method makes; OBJ and PLY write them as such.
+    with_quads(quads: bool);
+    /// A device that evaluates many points of one surface at once.
+    with_bulk(bulk: Bulk);
+    /// Record the cells of subdivisions, so that they can be drawn.
+    with_cells_recorded(record: bool);
+    /// Time after which a face is reported as failed; `None` is no limit. Default: 60 seconds. Platforms without a
+    /// clock ignore it.
+    with_face_timeout(timeout: Option<Duration>);
+    /// Number of triangles after which a face is reported as failed. Default: 20 million.
+    with_face_triangles(triangles: usize);
+}
+
+impl MeshOptions {
+    /// Largest distance between the mesh and the exact surfaces. Default: 0.1 %.
     pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
         self.tolerance = tolerance;
         self
     }
+
+    /// Largest distance between edges and their chords; `None`, the default, is the tolerance. Facets that touch an
+    /// edge may be as far off as the larger of the two.
     pub fn with_boundary_tolerance(mut self, tolerance: Option<Tolerance>) -> Self {
         self.boundary_tolerance = tolerance;
         self
     }
-    pub fn with_angle(mut self, radians: Option<f64>) -> Self {
-        self.angle = radians;
+
+    /// Whether faces that share no edges are joined before they are meshed.
+    pub fn with_sewing(mut self, sewing: Sewing) -> Self {
+        self.sewing = sewing;
         self
     }
-    pub fn with_max_edge(mut self, mm: Option<f64>) -> Self {
-        self.max_edge = mm;
+
+    /// The format that the mesh will be written in. The rounding of a format with 32-bit coordinates (binary STL, GLB)
+    /// is kept back from the tolerance, so that the mesh **as written** keeps it. `None`, the default: nothing is kept
+    /// back.
+    pub fn with_output_format(mut self, format: Option<Format>) -> Self {
+        self.output_format = format;
         self
     }
-    pub fn with_fill_method(mut self, method: Option<Arc<dyn FillMethod>>) -> Self {
-        self.fill_method = method;
-        self
+
+    /// Largest distance between the mesh and the exact surfaces.
+    pub fn tolerance(&self) -> Tolerance {
+        self.tolerance
     }
-    pub fn with_quads(mut self, quads: bool) -> Self {
-        self.quads = quads;
-        self
+
+    /// Largest distance between edges and their chords, where it is not the tolerance.
+    pub fn boundary_tolerance(&self) -> Option<Tolerance> {
+        self.boundary_tolerance
     }
-    pub fn with_edge_splitter(mut self, splitter: Option<Arc<dyn EdgeSplitter>>) -> Self {
-        self.edge_splitter = splitter;
-        self
+
+    /// Whether faces that share no edges are joined before they are meshed.
+    pub fn sewing(&self) -> Sewing {
+        self.sewing
     }
-    pub fn with_read(mut self, read: ReadOptions) -> Self {
-        self.read = read;
-        self
+
+    /// The format that the mesh will be written in.
+    pub fn output_format(&self) -> Option<Format> {
+        self.output_format
     }
-    pub fn with_sew(mut self, sew: Sew) -> Self {
-        self.sew = sew;
-        self
+
+    /// The name of the fill method, `default` where there is none.
+    pub fn fill_method_name(&self) -> &str {
+        self.mesher.fill_method.as_ref().map_or("default", |method| method.name())
     }
-    pub fn with_bound(mut self, bound: Bound) -> Self {
-        self.bound = bound;
-        self
+
+    /// The name of the edge splitter, `default` where there is none.
+    pub fn edge_splitter_name(&self) -> &str {
+        self.mesher.edge_splitter.as_ref().map_or("default", |method| method.name())
     }
-    pub fn with_bulk(mut self, bulk: Bulk) -> Self {
-        self.bulk = bulk;
-        self
+
+    /// The options of the mesher; lengths are millimetres, and its tolerances have no meaning yet.
+    pub fn mesher(&self) -> &Options {
+        &self.mesher
     }
-    pub fn with_jobs(mut self, jobs: Option<usize>) -> Self {
-        self.jobs = jobs;
-        self
-    }
-    pub fn with_strict(mut self, strict: bool) -> Self {
-        self.strict = strict;
-        self
-    }
-    pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {
-        self.face_timeout = timeout;
-        self
-    }
-    pub fn with_format(mut self, format: Option<Format>) -> Self {
-        self.format = format;
-        self
-    }
-    pub fn with_unit(mut self, unit: Option<Unit>) -> Self {
-        self.unit = unit;
-        self
-    }
-    pub fn with_up(mut self, up: Option<UpAxis>) -> Self {
-        self.up = up;
-        self
-    }
-    pub fn with_edges(mut self, edges: bool) -> Self {
-        self.edges = edges;
-        self
-    }
-    pub fn with_debug_svg(mut self, folder: Option<PathBuf>) -> Self {
-        self.debug_svg = folder;
-        self
+
+    /// The options for one part. Tolerances are in the part's units, `scale` leads from these to millimetres.
+    pub(crate) fn of_part(&self, tolerance: f64, boundary_tolerance: Option<f64>, scale: f64) -> Options {
+        let mut options = self.mesher.clone().with_boundary_tolerance(boundary_tolerance);
+        options.tolerance = tolerance;
+        let max_edge = options.max_edge.map(|length| length / scale);
+        options.with_max_edge(max_edge)
     }
 }

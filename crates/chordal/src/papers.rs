@@ -2,11 +2,12 @@
 //! surface method with and without coherence (Tables 3 and 4).
 
 use crate::compare::placed;
-use crate::job::read_model;
+use crate::error::Error;
 use crate::meshed_part::{MeshedPart, mesh_parts};
+use crate::model::Model;
+use crate::options::MeshOptions;
 use crate::resolve::{Resolved, resolve};
-use crate::{JobError, JobOptions};
-use chordal_brep::{FaceGeometry, Model};
+use chordal_brep::FaceGeometry;
 use chordal_mesh::FaceMesh;
 use chordal_methods::{
     Cut, EdgeMethod, LoopRow, Strategy, Stretch, edge_method_named, edge_methods, loop_rows,
@@ -22,22 +23,28 @@ use std::sync::Arc;
 /// What a model gives in the tables.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PaperTables {
+    /// The name of the file.
     pub model: String,
+    /// Faces, as placed.
     pub faces: usize,
     /// In millimetres.
     pub tolerance: f64,
+    /// Table 2.
     pub loops: Vec<LoopEntry>,
+    /// Tables 3 and 4.
     pub surfaces: Vec<SurfaceEntry>,
 }
 
 /// One way to make polylines of all trimming loops, each face its own.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LoopEntry {
+    /// The name of the method.
     pub method: String,
     /// Seconds from the model to Bézier curves.
     pub conversion: f64,
     /// Seconds from Bézier curves to polylines.
     pub approximation: f64,
+    /// As placed.
     pub edges: usize,
     /// Vertices set where loops cross in the plane of parameters.
     pub crossings: usize,
@@ -48,9 +55,13 @@ pub struct LoopEntry {
 /// One way to make a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SurfaceEntry {
+    /// The name of the strategy.
     pub strategy: String,
+    /// The name of the edge method.
     pub edge_method: String,
+    /// "proven" or "estimated".
     pub bound: String,
+    /// As placed.
     pub triangles: usize,
     /// Chords of the model's edges.
     pub edges: usize,
@@ -60,9 +71,11 @@ pub struct SurfaceEntry {
     pub vertices: usize,
     /// Seconds to evaluate them on the NURBS forms of the faces, each by itself and with reuse; sorted beforehand.
     pub evaluation: f64,
+    /// With reuse.
     pub coherent: f64,
     /// Cells of the subdivisions at the end.
     pub cells: usize,
+    /// Faces that failed, as placed.
     pub failed_faces: usize,
 }
 
@@ -76,26 +89,27 @@ const LONG: f64 = 5.0;
 ///
 /// # Errors
 /// Where the model cannot be read or the options make no sense for it.
-pub fn paper_tables(input: &Path, options: &JobOptions, cancel: &Cancel) -> Result<PaperTables, JobError> {
-    let model = read_model(input)?;
-    let resolved = resolve(&model, options, None, input, cancel)?;
+pub fn paper_tables(input: &Path, options: &MeshOptions, cancel: &Cancel) -> Result<PaperTables, Error> {
+    let model = Model::open(input)?;
+    let named = |error: crate::resolve::ResolveError| error.named(model.name());
+    let resolved = resolve(model.brep(), options, cancel).map_err(named)?;
     let mut tables = PaperTables {
         model: input.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        faces: model.placed_faces(),
+        faces: model.face_count(),
         tolerance: resolved.tolerance,
-        loops: loops(&model, &resolved),
+        loops: loops(model.brep(), &resolved),
         surfaces: Vec::new(),
     };
     for (strategy, edge_method, bound) in surface_methods() {
         let fill = strategy.map(|strategy| Arc::new(strategy) as Arc<dyn FillMethod>);
         let split = edge_method.map(|method| Arc::new(method) as Arc<dyn EdgeSplitter>);
         let options = options.clone().with_fill_method(fill).with_edge_splitter(split).with_bound(bound);
-        tables.surfaces.push(surface(&model, &options, input, cancel)?);
+        tables.surfaces.push(surface(&model, &options, cancel)?);
     }
     Ok(tables)
 }
 
-fn loops(model: &Model, resolved: &Resolved) -> Vec<LoopEntry> {
+fn loops(model: &chordal_brep::Model, resolved: &Resolved) -> Vec<LoopEntry> {
     let methods: Vec<EdgeMethod> = edge_methods().iter().filter_map(|e| e.method).collect();
     let mut entries: Vec<LoopEntry> = Vec::new();
     for (part, (part_use, options)) in model.parts.iter().zip(resolved.uses.iter().zip(&resolved.parts)) {
@@ -147,31 +161,26 @@ fn surface_methods() -> Vec<(Option<Strategy>, Option<EdgeMethod>, Bound)> {
     methods
 }
 
-fn surface(
-    model: &Model,
-    options: &JobOptions,
-    input: &Path,
-    cancel: &Cancel,
-) -> Result<SurfaceEntry, JobError> {
-    let resolved = resolve(model, options, None, input, cancel)?;
+fn surface(model: &Model, options: &MeshOptions, cancel: &Cancel) -> Result<SurfaceEntry, Error> {
+    let resolved = resolve(model.brep(), options, cancel).map_err(|error| error.named(model.name()))?;
     let mut entry = SurfaceEntry {
         strategy: options.fill_method_name().into(),
         edge_method: options.edge_splitter_name().into(),
-        bound: crate::names::bound_name(options.bound).into(),
+        bound: crate::names::bound_name(options.mesher().bound).into(),
         seconds: f64::INFINITY,
         ..SurfaceEntry::default()
     };
     let mut parts = Vec::new();
     for _ in 0..RUNS {
         let clock = Stopwatch::of_process();
-        parts = mesh_parts(model, &resolved, cancel, &|_| ());
+        parts = mesh_parts(model.brep(), &resolved, cancel, &|_| ());
         entry.seconds = entry.seconds.min(clock.seconds());
         if entry.seconds > LONG {
             break;
         }
     }
     for (i, part, instances, _) in placed(&resolved, &parts) {
-        book(&model.parts[i], part, instances, &mut entry);
+        book(&model.brep().parts[i], part, instances, &mut entry);
     }
     Ok(entry)
 }

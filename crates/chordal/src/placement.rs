@@ -6,6 +6,7 @@ use glam::{DAffine3, DMat3};
 /// All placements of one part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartUse {
+    /// How often the part is placed.
     pub instances: usize,
     /// The largest factor by which a placement stretches a length of the part on its way to millimetres; 1 where
     /// the part is never placed.

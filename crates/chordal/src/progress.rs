@@ -1,36 +1,87 @@
-//! How far a job is.
+//! How far a run is, and whether it goes on.
 
+use crate::error::Error;
 use crate::resolve::Resolved;
 use chordal_brep::{Model, Part};
+use chordal_tessellate::Cancel;
+use std::fmt;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// How far a job is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The phases of meshing a model, in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
-pub enum Progress {
-    Reading,
-    /// Shared edges of loose faces are being inferred.
+pub enum Phase {
+    /// Faces that share no edges are joined.
     Sewing,
-    /// The tolerance is being resolved: the box of the model.
+    /// The model is measured, so that a percentage becomes a length.
     Measuring,
-    /// So many of the distinct faces are done.
-    Meshing {
-        done: usize,
-        faces: usize,
-    },
+    /// Faces are meshed.
+    Meshing,
+    /// The mesh is checked.
     Auditing,
-    Writing,
 }
 
-/// Called from any thread.
-pub type OnProgress = Arc<dyn Fn(Progress) + Send + Sync>;
+/// Who is told of progress, and may cancel.
+#[derive(Clone, Default)]
+pub(crate) struct Listener {
+    call: Option<Call>,
+    cancel: Cancel,
+}
+
+type Call = Arc<dyn Fn(Phase, f64) -> ControlFlow<()> + Send + Sync>;
+
+impl fmt::Debug for Listener {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Listener").field("cancel", &self.cancel).finish_non_exhaustive()
+    }
+}
+
+impl Listener {
+    pub fn set_call(&mut self, call: impl Fn(Phase, f64) -> ControlFlow<()> + Send + Sync + 'static) {
+        self.call = Some(Arc::new(call));
+    }
+    pub fn set_cancel(&mut self, cancel: Cancel) {
+        self.cancel = cancel;
+    }
+    /// Starts a run. A run that the callback cancels leaves later ones alone.
+    pub fn start(&self) -> Run {
+        Run { call: self.call.clone(), cancel: self.cancel.child() }
+    }
+}
+
+/// Progress of one run.
+pub(crate) struct Run {
+    call: Option<Call>,
+    cancel: Cancel,
+}
+
+impl Run {
+    /// Reports that a phase is done to this fraction.
+    pub fn tell(&self, phase: Phase, fraction: f64) {
+        if self.call.as_ref().is_some_and(|call| call(phase, fraction).is_break()) {
+            self.cancel.cancel();
+        }
+    }
+
+    /// The flag that the stages look at.
+    pub fn cancel(&self) -> &Cancel {
+        &self.cancel
+    }
+
+    /// # Errors
+    /// [`Error::Cancelled`] where the caller cancelled.
+    pub fn check(&self) -> Result<(), Error> {
+        if self.cancel.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}
 
 /// Adds up the faces that are done over all parts.
 pub(crate) struct FaceCounter<'a> {
     done: AtomicUsize,
     faces: usize,
-    tell: &'a (dyn Fn(Progress) + Sync),
+    tell: &'a (dyn Fn(f64) + Sync),
 }
 
 /// The faces of one part that are done.
@@ -41,10 +92,11 @@ pub(crate) struct PartCounter<'a> {
 }
 
 impl<'a> FaceCounter<'a> {
-    pub fn start(model: &Model, resolved: &Resolved, tell: &'a (dyn Fn(Progress) + Sync)) -> Self {
+    /// `tell` receives the fraction that is done.
+    pub fn start(model: &Model, resolved: &Resolved, tell: &'a (dyn Fn(f64) + Sync)) -> Self {
         let placed = model.parts.iter().zip(&resolved.uses).filter(|(_, u)| u.instances > 0);
         let faces = placed.map(|(p, _)| p.faces.len()).sum();
-        tell(Progress::Meshing { done: 0, faces });
+        tell(0.0);
         Self { done: AtomicUsize::new(0), faces, tell }
     }
     pub fn part(&'a self, part: &Part) -> PartCounter<'a> {
@@ -61,7 +113,7 @@ impl PartCounter<'_> {
         let more = done.saturating_sub(before);
         if more > 0 {
             let done = self.all.done.fetch_add(more, Ordering::Relaxed) + more;
-            (self.all.tell)(Progress::Meshing { done, faces: self.all.faces });
+            (self.all.tell)(done as f64 / self.all.faces as f64);
         }
     }
 }

@@ -1,13 +1,10 @@
-//! Pictures of models.
+//! Pictures of meshes and of exact models, drawn by a GPU or a software device.
 
-use crate::{Job, JobError, JobOptions, OnProgress, Report, run, whole_file};
+use crate::meshed::Meshed;
 use chordal_gpu::{
     DeviceChoice, FaceRenderer, FaceScene, Gpu, GpuError, Legend, RenderOptions, Renderer, Style,
     mesh_scenery, trimmed_model,
 };
-use chordal_tessellate::Cancel;
-use std::fmt;
-use std::path::{Path, PathBuf};
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,102 +16,74 @@ pub enum RenderMode {
     Nurbs,
 }
 
-/// What exact pictures took.
+/// How much was evaluated for an exact picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Evaluated {
     /// Points evaluated on the device.
     pub points: usize,
-    /// Faces drawn from them; the others are beyond the picture or show their backs.
+    /// Faces drawn from them; the others are outside the picture or face away.
     pub drawn: usize,
     /// Faces without an exact form, drawn as triangles.
     pub meshed: usize,
 }
 
-/// A picture to be taken of one file.
-#[derive(Clone)]
-pub struct RenderJob {
-    pub input: PathBuf,
-    /// The PNG file.
-    pub output: PathBuf,
-    /// How the model is meshed.
-    pub mesh: JobOptions,
-    pub picture: RenderOptions,
-    pub mode: RenderMode,
-    pub device: DeviceChoice,
-    pub cancel: Cancel,
-    pub on_progress: Option<OnProgress>,
-}
-
-impl fmt::Debug for RenderJob {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("RenderJob")
-            .field("input", &self.input)
-            .field("output", &self.output)
-            .field("picture", &self.picture)
-            .finish_non_exhaustive()
-    }
-}
-
-/// What was drawn.
+/// A picture.
 #[derive(Clone, Debug)]
-pub struct Rendered {
-    /// The adapter that drew it.
-    pub adapter: String,
-    /// What the colours mean, of measured styles.
+pub struct Image {
+    /// The bytes of a PNG file.
+    pub png: Vec<u8>,
+    /// What the colours mean, for styles that measure something.
     pub legend: Option<Legend>,
-    /// Of exact pictures.
+    /// For exact pictures.
     pub evaluated: Option<Evaluated>,
-    /// How the model was meshed.
-    pub report: Report,
 }
 
-/// Why there is no picture; each message is one sentence.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RenderError {
-    #[error(transparent)]
-    Job(#[from] JobError),
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    #[error("cannot write {}: {source}", path.display())]
-    Write { path: PathBuf, source: std::io::Error },
+/// A device that draws pictures.
+#[derive(Debug)]
+pub struct ImageRenderer {
+    gpu: Gpu,
+    renderer: Renderer,
 }
 
-/// Meshes a file and draws it.
-///
-/// # Errors
-/// Where there is no device, where nothing could be meshed, or where the picture cannot be written.
-pub fn render(job: &RenderJob) -> Result<Rendered, RenderError> {
-    // The device first: without one all else would be in vain.
-    let gpu = Gpu::open(job.device)?;
-    let meshing = Job {
-        input: job.input.clone(),
-        output: None,
-        options: job.mesh.clone(),
-        cancel: job.cancel.clone(),
-        on_progress: job.on_progress.clone(),
-    };
-    let outcome = run(&meshing)?;
-    let (scene, model) = (&outcome.scene, &outcome.model);
-    let renderer = Renderer::new(&gpu)?;
-    // What measures or shows the mesh is drawn from it.
-    let of_mesh = matches!(job.picture.style, Style::Wireframe | Style::Curvature | Style::Error);
-    let (picture, legend, points) = if job.mode == RenderMode::Mesh || of_mesh {
-        let (scenery, legend) = mesh_scenery(scene, model, job.picture.style);
-        (renderer.render(&gpu, scene, &scenery, &job.picture)?, legend, None)
-    } else {
+impl ImageRenderer {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn open(choice: DeviceChoice) -> Result<Self, GpuError> {
+        let gpu = Gpu::open(choice)?;
+        let renderer = Renderer::new(&gpu)?;
+        Ok(Self { gpu, renderer })
+    }
+
+    /// The name of the device.
+    pub fn device_name(&self) -> &str {
+        self.gpu.name()
+    }
+
+    /// Draws a mesh, or the exact model that it was made of. Styles that measure or show the mesh draw the mesh.
+    ///
+    /// # Errors
+    /// Where the device fails or the model is too large for it.
+    pub fn render(
+        &self,
+        meshed: &Meshed,
+        mode: RenderMode,
+        options: &RenderOptions,
+    ) -> Result<Image, GpuError> {
+        let (scene, model) = (meshed.scene(), meshed.brep());
+        let of_mesh = matches!(options.style, Style::Wireframe | Style::Curvature | Style::Error);
+        if mode == RenderMode::Mesh || of_mesh {
+            let (scenery, legend) = mesh_scenery(scene, model, options.style);
+            let picture = self.renderer.render(&self.gpu, scene, &scenery, options)?;
+            return Ok(Image { png: picture.to_png()?, legend, evaluated: None });
+        }
         let exact = trimmed_model(scene, model);
-        let faces = FaceRenderer::new(&gpu)?;
-        let meshed = exact.parts.iter().map(|p| p.meshed.len()).sum();
-        let mut on_device = FaceScene::new(&gpu, exact, (scene, model), job.picture.style)?;
-        let (picture, counts) = renderer.render_faces(&gpu, &faces, &mut on_device, &job.picture)?;
-        (picture, None, Some(Evaluated { points: counts.points, drawn: counts.faces, meshed }))
-    };
-    write(&job.output, &picture.to_png()?)?;
-    Ok(Rendered { adapter: gpu.name().to_owned(), legend, evaluated: points, report: outcome.report })
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
-    whole_file::write_bytes(path, bytes)
-        .map_err(|source| RenderError::Write { path: path.to_owned(), source })
+        let faces = FaceRenderer::new(&self.gpu)?;
+        let meshed_faces = exact.parts.iter().map(|p| p.meshed.len()).sum();
+        let mut on_device = FaceScene::new(&self.gpu, exact, (scene, model), options.style)?;
+        let (picture, counts) = self.renderer.render_faces(&self.gpu, &faces, &mut on_device, options)?;
+        let evaluated = Evaluated { points: counts.points, drawn: counts.faces, meshed: meshed_faces };
+        Ok(Image { png: picture.to_png()?, legend: None, evaluated: Some(evaluated) })
+    }
 }

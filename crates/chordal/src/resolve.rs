@@ -1,12 +1,13 @@
 //! From what was asked of the whole model to what is asked of every part, in its own units.
 
+use crate::error::{Error, FileError, RequestError};
+use crate::options::MeshOptions;
 use crate::placement::{PartUse, part_uses};
+use crate::quantity::Tolerance;
 use crate::tight_box::{edge_box, tight_box};
-use crate::{JobError, JobOptions, Tolerance};
-use chordal_brep::Model;
+use chordal_brep::{Model, Source};
 use chordal_tessellate::{Cancel, Options};
 use chordal_write::Format;
-use std::path::Path;
 
 /// A tolerance below this many units in the last place of the largest coordinate is refused: evaluating a surface
 /// costs some tens of roundings, so nothing finer can be proven.
@@ -36,69 +37,80 @@ pub struct Resolved {
     pub parts: Vec<Options>,
 }
 
-/// Resolves `options` for `model`, to be written as `format`.
+/// Why the options mean nothing for a model.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ResolveError {
+    TooFine { tolerance: f64, minimum: f64 },
+    OutOfRange { entity: Source, coordinate: f64 },
+}
+
+impl ResolveError {
+    /// The error about the model of this name.
+    pub fn named(self, name: &str) -> Error {
+        match self {
+            ResolveError::TooFine { tolerance, minimum } => {
+                RequestError::ToleranceTooFine { tolerance, minimum }.into()
+            }
+            ResolveError::OutOfRange { entity, coordinate } => {
+                Error::file(name, FileError::CoordinateOutOfRange { entity, coordinate })
+            }
+        }
+    }
+}
+
+/// Resolves `options` for `model`.
 ///
 /// # Errors
-/// Where the tolerance is below what the coordinates can hold, or the coordinates are absurd.
-pub fn resolve(
+/// Where the tolerance is below what the coordinates can represent, or a coordinate is out of range.
+pub(crate) fn resolve(
     model: &Model,
-    options: &JobOptions,
-    format: Option<Format>,
-    input: &Path,
+    options: &MeshOptions,
     cancel: &Cancel,
-) -> Result<Resolved, JobError> {
+) -> Result<Resolved, ResolveError> {
     let uses = part_uses(model);
     let edges = edge_box(model, &uses);
-    let asked = [Some(options.tolerance), options.boundary_tolerance];
-    let relative = asked.iter().flatten().any(|t| matches!(t, Tolerance::Percent(_)));
-    let size = if relative { tight_box(model, &uses, edges, options.face_timeout, cancel) } else { edges };
+    let requested = [Some(options.tolerance()), options.boundary_tolerance()];
+    let relative = requested.iter().flatten().any(|t| matches!(t, Tolerance::Percent(_)));
+    let face_timeout = options.mesher().face_timeout;
+    let size = if relative { tight_box(model, &uses, edges, face_timeout, cancel) } else { edges };
     let diagonal = relative.then(|| size.diagonal());
     let millimetres = |tolerance: Tolerance| match tolerance {
         Tolerance::Millimetres(mm) => mm,
         Tolerance::Percent(percent) => percent / 100.0 * size.diagonal(),
     };
-    let tolerance = millimetres(options.tolerance);
-    let boundary_tolerance = options.boundary_tolerance.map_or(tolerance, millimetres);
+    let tolerance = millimetres(options.tolerance());
+    let boundary_tolerance = options.boundary_tolerance().map_or(tolerance, millimetres);
     let largest = size.largest_coordinate();
     if largest.is_nan() || largest >= LARGEST {
-        return Err(too_large(model, input));
+        return Err(out_of_range(model));
     }
-    let floor = FLOOR_ULPS * f64::EPSILON * largest;
+    let minimum = FLOOR_ULPS * f64::EPSILON * largest;
     for tolerance in [tolerance, boundary_tolerance] {
-        if !(tolerance > floor && tolerance.is_finite()) {
-            return Err(JobError::BelowFloor { path: input.to_owned(), tolerance, floor });
+        if !(tolerance > minimum && tolerance.is_finite()) {
+            return Err(ResolveError::TooFine { tolerance, minimum });
         }
     }
-    let rounding = rounding(largest, format);
-    // Where rounding eats more than half, the report says that the tolerance was not kept.
+    let rounding = rounding(largest, options.output_format());
+    // Where rounding takes more than half, the report says that the tolerance was not kept.
     let of_parts = |tolerance: f64| tolerance - rounding.min(0.5 * tolerance);
-    let boundary = options.boundary_tolerance.map(|_| of_parts(boundary_tolerance));
+    let boundary = options.boundary_tolerance().map(|_| of_parts(boundary_tolerance));
     let parts = uses
         .iter()
         .map(|part_use| {
-            Options::new(of_parts(tolerance) / part_use.scale)
-                .with_boundary_tolerance(boundary.map(|length| length / part_use.scale))
-                .with_angle(options.angle)
-                .with_max_edge(options.max_edge.map(|length| length / part_use.scale))
-                .with_bound(options.bound)
-                .with_fill_method(options.fill_method.clone())
-                .with_quads(options.quads)
-                .with_edge_splitter(options.edge_splitter.clone())
-                .with_bulk(options.bulk.clone())
-                .with_cells_recorded(options.debug_svg.is_some())
-                .with_face_timeout(options.face_timeout)
+            let boundary = boundary.map(|length| length / part_use.scale);
+            options.of_part(of_parts(tolerance) / part_use.scale, boundary, part_use.scale)
         })
         .collect();
     Ok(Resolved { tolerance, boundary_tolerance, diagonal, rounding, uses, parts })
 }
 
 /// Names the vertex that lies farthest out.
-fn too_large(model: &Model, input: &Path) -> JobError {
+fn out_of_range(model: &Model) -> ResolveError {
     let reach = |v: &chordal_brep::Vertex| v.point.abs().max_element();
     let vertices = model.parts.iter().flat_map(|p| &p.vertices);
     let farthest = vertices.max_by(|a, b| reach(a).total_cmp(&reach(b)));
-    let at = farthest.map_or_else(|| "the model".into(), |v| v.source.to_string());
-    JobError::TooLarge { path: input.to_owned(), at, reach: farthest.map_or(f64::INFINITY, reach) }
+    let entity = farthest.map_or_else(Source::default, |v| v.source);
+    ResolveError::OutOfRange { entity, coordinate: farthest.map_or(f64::INFINITY, reach) }
 }
 
 /// The distance in millimetres by which placing and writing may move a vertex of a model whose coordinates reach

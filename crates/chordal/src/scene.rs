@@ -1,16 +1,14 @@
 //! From the model and its meshes to the scene that writers write.
 
-use crate::analytic::face_surfaces;
 use chordal_brep::{Color, Model, Node, Part};
 use chordal_mesh::{PartMesh, PassThrough, Rgba, Scene, SceneNode, ScenePart};
 use std::sync::Arc;
 
-/// Joins names, colours and placements of the model with the meshes of its parts, one per part in the model's order;
-/// `analytic` adds the elementary surfaces under the faces.
-pub(crate) fn scene(model: &Model, meshes: Vec<Arc<PartMesh>>, analytic: bool) -> Scene {
+/// Joins names, colours and placements of the model with the meshes of its parts, one per part in the model's order.
+pub(crate) fn scene(model: &Model, meshes: Vec<Arc<PartMesh>>) -> Scene {
     Scene {
         name: model.name.clone(),
-        parts: model.parts.iter().zip(meshes).map(|(part, mesh)| scene_part(part, mesh, analytic)).collect(),
+        parts: model.parts.iter().zip(meshes).map(|(part, mesh)| scene_part(part, mesh)).collect(),
         nodes: model.nodes.iter().map(scene_node).collect(),
         roots: model.roots.iter().map(|id| id.index()).collect(),
     }
@@ -26,7 +24,7 @@ fn scene_node(node: &Node) -> SceneNode {
     }
 }
 
-fn scene_part(part: &Part, mesh: Arc<PartMesh>, analytic: bool) -> ScenePart {
+fn scene_part(part: &Part, mesh: Arc<PartMesh>) -> ScenePart {
     let (face_bodies, mut body_names) = face_bodies(part);
     let face_colors = part
         .faces
@@ -42,7 +40,7 @@ fn scene_part(part: &Part, mesh: Arc<PartMesh>, analytic: bool) -> ScenePart {
     }
     ScenePart {
         name: part.name.clone(),
-        face_surfaces: if analytic { face_surfaces(part, &mesh) } else { Vec::new() },
+        face_surfaces: Vec::new(),
         mesh,
         face_colors,
         face_names: part.faces.iter().map(|f| f.name.clone()).collect(),

@@ -1,19 +1,21 @@
-//! Sewing of a model before it is meshed, and what the report says of it.
+//! Sewing of a model before it is meshed: faces that share no edges get shared ones.
 
-use crate::placement::{PartUse, part_uses};
-use crate::{QuantityError, parse_length};
+use crate::placement::PartUse;
+use crate::quantity::{QuantityError, parse_length};
 use chordal_brep::{Model, Part};
 use chordal_sew::{SewReport, SewTolerance, has_topology, sew_part};
 use rayon::prelude::*;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// Whether edges that one face alone uses are sewn to their neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Sew {
-    /// `Auto` for parts no two faces of which share an edge: their file has no topology. Other parts stay as they are.
+pub enum Sewing {
+    /// [`Sewing::Auto`] for parts without an edge that two faces share; other parts stay as they are.
     #[default]
-    WhereLoose,
+    AutoIfUnshared,
+    /// Parts stay as they are.
     Off,
     /// With a tolerance from the part's own resolution and gaps.
     Auto,
@@ -21,49 +23,59 @@ pub enum Sew {
     Millimetres(f64),
 }
 
-impl fmt::Display for Sew {
+impl fmt::Display for Sewing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Sew::WhereLoose => f.write_str("auto-if-unshared"),
-            Sew::Off => f.write_str("off"),
-            Sew::Auto => f.write_str("auto"),
-            Sew::Millimetres(mm) => write!(f, "{mm} mm"),
+            Sewing::AutoIfUnshared => f.write_str("auto-if-unshared"),
+            Sewing::Off => f.write_str("off"),
+            Sewing::Auto => f.write_str("auto"),
+            Sewing::Millimetres(mm) => write!(f, "{mm} mm"),
         }
     }
 }
 
-impl FromStr for Sew {
+impl FromStr for Sewing {
     type Err = QuantityError;
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
         match text.trim() {
-            "auto" => Ok(Sew::Auto),
-            "off" => Ok(Sew::Off),
-            length => parse_length(length).map(Sew::Millimetres),
+            "auto" => Ok(Sewing::Auto),
+            "off" => Ok(Sewing::Off),
+            length => parse_length(length).map(Sewing::Millimetres),
         }
     }
 }
 
-/// Sews the parts of a model in place, each by itself; one report per part, `None` where nothing was asked.
-pub fn sew_model(model: &mut Model, sew: Sew) -> Vec<Option<SewReport>> {
-    let uses = part_uses(model);
-    let parts = model.parts.par_iter_mut().zip(&uses);
-    parts
-        .map(|(part, part_use)| {
-            let tolerance = tolerance(part, part_use, sew)?;
-            let (sewn, report) = sew_part(part, tolerance);
+/// Sews the parts of a model, each by itself: the model, and one report per part, `None` where it was not sewn. A model
+/// that is not sewn is not copied.
+pub fn sew_parts(
+    model: Arc<Model>,
+    uses: &[PartUse],
+    sewing: Sewing,
+) -> (Arc<Model>, Vec<Option<SewReport>>) {
+    let parts = model.parts.par_iter().zip(uses);
+    let sewn: Vec<Option<(Part, SewReport)>> =
+        parts.map(|(part, part_use)| Some(sew_part(part, tolerance(part, part_use, sewing)?))).collect();
+    if sewn.iter().all(Option::is_none) {
+        return (model, sewn.iter().map(|_| None).collect());
+    }
+    let mut model = Arc::unwrap_or_clone(model);
+    let mut reports = Vec::with_capacity(sewn.len());
+    for (part, sewn) in model.parts.iter_mut().zip(sewn) {
+        reports.push(sewn.map(|(sewn, report)| {
             *part = sewn;
-            Some(report)
-        })
-        .collect()
+            report
+        }));
+    }
+    (Arc::new(model), reports)
 }
 
-fn tolerance(part: &Part, part_use: &PartUse, sew: Sew) -> Option<SewTolerance> {
-    match sew {
+fn tolerance(part: &Part, part_use: &PartUse, sewing: Sewing) -> Option<SewTolerance> {
+    match sewing {
         _ if part.faces.is_empty() => None,
-        Sew::Off => None,
-        Sew::WhereLoose => (part.faces.len() > 1 && !has_topology(part)).then_some(SewTolerance::Auto),
-        Sew::Auto => Some(SewTolerance::Auto),
-        Sew::Millimetres(mm) => Some(SewTolerance::Length(mm / part_use.scale)),
+        Sewing::Off => None,
+        Sewing::AutoIfUnshared => (part.faces.len() > 1 && !has_topology(part)).then_some(SewTolerance::Auto),
+        Sewing::Auto => Some(SewTolerance::Auto),
+        Sewing::Millimetres(mm) => Some(SewTolerance::Length(mm / part_use.scale)),
     }
 }

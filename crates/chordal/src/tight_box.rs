@@ -23,7 +23,9 @@ use std::time::Duration;
 /// An axis-aligned box in millimetres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TightBox {
+    /// The lowest corner.
     pub min: DVec3,
+    /// The highest corner.
     pub max: DVec3,
 }
 
@@ -34,6 +36,7 @@ impl TightBox {
     pub fn diagonal(&self) -> f64 {
         if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
     }
+    /// Nothing is in it.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }

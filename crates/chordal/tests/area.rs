@@ -3,7 +3,7 @@
 #![cfg(feature = "methods")]
 
 use chordal::methods::strategy_named;
-use chordal::{Job, JobOptions, Tolerance};
+use chordal::{MeshOptions, Mesher, Model, Tolerance};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -14,8 +14,9 @@ const AREAS: [(&str, f64); 2] =
 fn area(name: &str, strategy: &str, percent: f64) -> f64 {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step");
     let fill = strategy_named(strategy).expect("a known name").fill_method();
-    let options = JobOptions::default().with_tolerance(Tolerance::Percent(percent)).with_fill_method(fill);
-    chordal::run(&Job::new(path).with_options(options)).expect("a mesh").report.area
+    let options = MeshOptions::default().with_tolerance(Tolerance::Percent(percent)).with_fill_method(fill);
+    let model = Model::open(path).expect("a model");
+    Mesher::new(options).mesh(&model).expect("a mesh").report().area
 }
 
 #[test]

@@ -3,17 +3,18 @@
 #![cfg(feature = "methods")]
 
 use chordal::methods::{StrategyEntry, strategies};
-use chordal::{Closedness, Job, JobOptions, Report, Tolerance};
+use chordal::{Closedness, MeshOptions, Mesher, Model, Report, Tolerance};
 use std::path::Path;
 
 fn mesh(name: &str, strategy: &StrategyEntry, inside: f64, boundary: Option<f64>) -> Report {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step");
-    let options = JobOptions::default()
+    let options = MeshOptions::default()
         .with_angle(None)
         .with_tolerance(Tolerance::Percent(inside))
         .with_boundary_tolerance(boundary.map(Tolerance::Percent))
         .with_fill_method(strategy.fill_method());
-    chordal::run(&Job::new(path).with_options(options)).expect("a mesh").report
+    let model = Model::open(path).expect("a model");
+    Mesher::new(options).mesh(&model).expect("a mesh").into_report()
 }
 
 const MODELS: [&str; 4] = ["bracket", "fillet_torus", "blade", "sphere_side_cut"];

@@ -5,7 +5,7 @@
 
 use chordal::methods::strategy_named;
 use chordal::nurbs::DVec3;
-use chordal::{Job, JobOptions, Outcome, Tolerance};
+use chordal::{MeshOptions, Meshed, Mesher, Model, Tolerance};
 use std::path::PathBuf;
 
 type Corner = (f64, f64);
@@ -29,7 +29,7 @@ fn surface(bump: f64) -> String {
 }
 
 /// Faces of the sheet, each with its loops as corners of a common list; sides between the same two corners are one edge.
-fn mesh(name: &str, bump: f64, corners: &[Corner], faces: &[&[&[usize]]], strategy: &str) -> Outcome {
+fn mesh(name: &str, bump: f64, corners: &[Corner], faces: &[&[&[usize]]], strategy: &str) -> Meshed {
     let mut edges: Vec<[usize; 2]> = Vec::new();
     let mut texts = Vec::new();
     for loops in faces {
@@ -75,10 +75,10 @@ fn mesh(name: &str, bump: f64, corners: &[Corner], faces: &[&[&[usize]]], strate
     );
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.json"));
     std::fs::write(&path, text).expect("written");
-    let options = JobOptions::default()
+    let options = MeshOptions::default()
         .with_tolerance(Tolerance::Millimetres(0.02))
         .with_fill_method(strategy_named(strategy).expect("a known name").fill_method());
-    chordal::run(&Job::new(path).with_options(options)).expect("a mesh")
+    Mesher::new(options).mesh(&Model::open(path).expect("a model")).expect("a mesh")
 }
 
 fn odd(polygon: &[Corner], u: f64, v: f64) -> bool {
@@ -101,15 +101,15 @@ fn area(bump: f64, inside: impl Fn(f64, f64) -> bool) -> f64 {
     all.map(|(u, v)| density(u, v)).sum::<f64>() / f64::from(N * N)
 }
 
-fn check(outcome: &Outcome, expected: f64, what: &str) {
-    let report = &outcome.report;
+fn check(outcome: &Meshed, expected: f64, what: &str) {
+    let report = outcome.report();
     assert!(report.clean, "{what}: {:?}", report.error_sentences());
     assert!(report.proven_error <= Some(0.02), "{what}: {:?}", report.proven_error);
     assert!((report.area / expected - 1.0).abs() < 0.01, "{what}: {} for {expected}", report.area);
 }
 
 /// One face with these loops, the first of them the outer one.
-fn one_face(name: &str, loops: &[&[Corner]], strategy: &str) -> Outcome {
+fn one_face(name: &str, loops: &[&[Corner]], strategy: &str) -> Meshed {
     let corners: Vec<Corner> = loops.iter().flat_map(|l| l.iter().copied()).collect();
     let mut first = 0;
     let ids: Vec<Vec<usize>> = loops
@@ -147,7 +147,7 @@ fn regions_are_what_winding_numbers_say_by_every_strategy() {
         for strategy in ["default", "coving", "bezier"] {
             let outcome = one_face(&format!("crossing_{name}_{strategy}"), loops, strategy);
             check(&outcome, expected, &format!("{name} {strategy}"));
-            assert!(outcome.report.problems.iter().any(|p| p.code == "loops-untangled"), "{name}");
+            assert!(outcome.report().problems.iter().any(|p| p.code == "loops-untangled"), "{name}");
         }
     }
 }
@@ -182,7 +182,7 @@ fn a_neighbour_keeps_the_edge_that_is_crossed() {
         });
         check(&outcome, expected, name);
         // Both faces have a vertex where the hole crosses: the border has no T.
-        let mesh = &outcome.scene.parts[0].mesh;
+        let mesh = &outcome.scene().parts[0].mesh;
         let sides = |f: usize| {
             let face = &mesh.faces[f];
             face.triangles.iter().flat_map(|t| {
@@ -220,7 +220,7 @@ fn random_loops() {
         let given: Vec<&[Corner]> = loops.iter().map(Vec::as_slice).collect();
         let expected = area(6.0, |u, v| odd(given[0], u, v) && !given[1..].iter().any(|l| odd(l, u, v)));
         let outcome = one_face(&format!("crossing_random_{trial}"), &given, "default");
-        let report = &outcome.report;
+        let report = outcome.report();
         assert!(report.clean, "{trial}: {:?}", report.error_sentences());
         assert!(
             (report.area - expected).abs() < 0.01 * expected + 0.2,

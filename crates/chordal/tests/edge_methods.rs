@@ -3,7 +3,7 @@
 #![cfg(feature = "methods")]
 
 use chordal::methods::{EdgeMethodEntry, edge_method_named, edge_methods};
-use chordal::{Job, JobOptions, Report, Tolerance};
+use chordal::{MeshOptions, Meshed, Mesher, Model, Report, Tolerance};
 use std::path::{Path, PathBuf};
 
 fn corpus(name: &str) -> PathBuf {
@@ -11,10 +11,11 @@ fn corpus(name: &str) -> PathBuf {
 }
 
 fn mesh(name: &str, percent: f64, method: &EdgeMethodEntry) -> Result<Report, String> {
-    let options = JobOptions::default()
+    let options = MeshOptions::default()
         .with_tolerance(Tolerance::Percent(percent))
         .with_edge_splitter(method.edge_splitter());
-    chordal::run(&Job::new(corpus(name)).with_options(options)).map(|o| o.report).map_err(|e| e.to_string())
+    let model = Model::open(corpus(name)).map_err(|e| e.to_string())?;
+    Mesher::new(options).mesh(&model).map(Meshed::into_report).map_err(|e| e.to_string())
 }
 
 /// Where another method's mesh is not as clean as the default's.

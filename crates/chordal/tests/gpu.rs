@@ -6,7 +6,7 @@ use chordal::gpu::{BACKENDS, DeviceChoice, GpuError};
 use chordal::nurbs::BulkEvaluator;
 use chordal::nurbs::DVec2;
 use chordal::tessellate::Bulk;
-use chordal::{GpuEvaluator, Job, JobOptions, Report, Tolerance};
+use chordal::{GpuEvaluator, MeshOptions, Mesher, Model, Report, Tolerance};
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -36,11 +36,12 @@ fn corpus(name: &str) -> PathBuf {
 }
 
 fn meshed(name: &str, strategy: &str, bulk: Bulk) -> Report {
-    let options = JobOptions::default()
+    let options = MeshOptions::default()
         .with_tolerance(Tolerance::Percent(0.05))
         .with_fill_method(chordal::methods::strategy_named(strategy).expect("a name").fill_method())
         .with_bulk(bulk);
-    chordal::run(&Job::new(corpus(name)).with_options(options)).expect("it can be meshed").report
+    let model = Model::open(corpus(name)).expect("it can be read");
+    Mesher::new(options).mesh(&model).expect("it can be meshed").into_report()
 }
 
 #[test]

@@ -8,7 +8,7 @@
 use chordal::mesh::Origin;
 use chordal::methods::strategy_named;
 use chordal::nurbs::DVec3;
-use chordal::{Job, JobOptions, Outcome, Tolerance};
+use chordal::{MeshOptions, Meshed, Mesher, Model, Tolerance};
 use std::path::PathBuf;
 
 /// A trim with few, long sides in the plane of parameters.
@@ -42,7 +42,7 @@ fn spline(degree: usize) -> String {
 }
 
 /// A bicubic sheet, 10 wide, with a bump 4 high.
-fn mesh(name: &str, trim: &str, strategy: &str) -> Outcome {
+fn mesh(name: &str, trim: &str, strategy: &str) -> Meshed {
     let height = |i: usize, j: usize| if (1..3).contains(&i) && (1..3).contains(&j) { 4.0 } else { 0.0 };
     let place = |k: usize| {
         format!(
@@ -62,15 +62,15 @@ fn mesh(name: &str, trim: &str, strategy: &str) -> Outcome {
     );
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.json"));
     std::fs::write(&path, text).expect("written");
-    let options = JobOptions::default()
+    let options = MeshOptions::default()
         .with_tolerance(Tolerance::Millimetres(0.01))
         .with_angle(None)
         .with_fill_method(strategy_named(strategy).expect("a known name").fill_method());
-    chordal::run(&Job::new(path).with_options(options)).expect("a mesh")
+    Mesher::new(options).mesh(&Model::open(path).expect("a model")).expect("a mesh")
 }
 
-fn samples_of_edges(outcome: &Outcome) -> usize {
-    let origins = &outcome.scene.parts[0].mesh.origins;
+fn samples_of_edges(meshed: &Meshed) -> usize {
+    let origins = &meshed.scene().parts[0].mesh.origins;
     origins.iter().filter(|o| matches!(o, Origin::Edge { .. })).count()
 }
 
@@ -97,12 +97,12 @@ fn a_polyline_is_subdivided_as_finely_as_a_curve() {
         // Four straight sides over a bump: left alone they would have no sample at all. All sagittas allow at least this many chords.
         assert!((counts[0] + 4) as f64 >= 4.0 * fewest_chords(0.01), "{strategy}: {counts:?}");
         assert!(counts.iter().all(|c| c.abs_diff(counts[0]) <= 4), "{strategy}: {counts:?}");
-        for outcome in &meshes {
-            assert!(outcome.report.clean, "{strategy}: {:?}", outcome.report.error_sentences());
-            assert!(outcome.report.boundary_error.is_some_and(|e| e > 0.002 && e <= 0.01));
-            assert!(outcome.report.proven_error <= Some(0.01));
+        for meshed in &meshes {
+            assert!(meshed.report().clean, "{strategy}: {:?}", meshed.report().error_sentences());
+            assert!(meshed.report().boundary_error.is_some_and(|e| e > 0.002 && e <= 0.01));
+            assert!(meshed.report().proven_error <= Some(0.01));
         }
-        let areas = meshes.each_ref().map(|outcome| outcome.report.area);
+        let areas = meshes.each_ref().map(|meshed| meshed.report().area);
         assert!(areas.iter().all(|a| (a / areas[0] - 1.0).abs() < 1e-3), "{strategy}: {areas:?}");
     }
 }
@@ -117,10 +117,10 @@ fn chords_pass_over_the_points_of_dense_polylines() {
         (0.5 + 0.4 * cosine, 0.5 + 0.25 * sine)
     };
     let points: Vec<(f64, f64)> = (0..=DENSE).map(on_ellipse).collect();
-    let outcome = mesh("dense", &polyline(&points), "default");
-    let samples = samples_of_edges(&outcome);
+    let meshed = mesh("dense", &polyline(&points), "default");
+    let samples = samples_of_edges(&meshed);
     // The ellipse of semi-axes 4 and 2.5 has ∮√κ ds = 11.06; over √8ε that is 39 chords, and the sheet adds to them.
     assert!((39..DENSE / 5).contains(&samples), "{samples}");
-    assert!(outcome.report.clean, "{:?}", outcome.report.error_sentences());
-    assert!(outcome.report.boundary_error.is_some_and(|e| e > 0.001 && e <= 0.01));
+    assert!(meshed.report().clean, "{:?}", meshed.report().error_sentences());
+    assert!(meshed.report().boundary_error.is_some_and(|e| e > 0.001 && e <= 0.01));
 }

@@ -1,6 +1,6 @@
 //! The right part of every surface: each model of `corpus/region` has its area by a closed form.
 
-use chordal::{Job, JobOptions, Tolerance};
+use chordal::{MeshOptions, Mesher, Model, Tolerance};
 use std::path::{Path, PathBuf};
 
 /// Windows and bands are cut into chords: at the tolerances below their areas are this near to the exact
@@ -29,9 +29,9 @@ fn every_face_has_its_area() {
     for (name, area) in models {
         for share in [0.001, 0.0002] {
             let path = folder().join(&name);
-            let options = JobOptions::default().with_tolerance(Tolerance::Percent(100.0 * share));
-            let report = match chordal::run(&Job::new(path).with_options(options)) {
-                Ok(outcome) => outcome.report,
+            let options = MeshOptions::default().with_tolerance(Tolerance::Percent(100.0 * share));
+            let report = match Model::open(path).and_then(|model| Mesher::new(options).mesh(&model)) {
+                Ok(meshed) => meshed.into_report(),
                 Err(error) => {
                     faults.push(format!("{name} at {share}: {error}"));
                     continue;
@@ -52,7 +52,7 @@ fn every_face_has_its_area() {
 #[test]
 fn a_face_without_area_is_listed_and_the_solid_is_watertight() {
     let path = folder().join("sliver_on_edge.step");
-    let report = chordal::run(&Job::new(path)).expect("a mesh").report;
+    let report = Mesher::default().mesh(&Model::open(path).expect("a model")).expect("a mesh").into_report();
     assert!(report.clean, "{:?}", report.error_sentences());
     assert_eq!(report.faces.zero_area, 1);
     assert_eq!((report.shells.closed, report.shells.leaking), (1, 0));

@@ -1,9 +1,11 @@
 //! Sewing as a user meets it: models taken apart into islands come out closed again.
 
 use chordal::brep::{Body, BodyKind, FaceId, Loop, Model, Part, Shell, ShellId, Vertex, VertexId};
-use chordal::{Cancel, JobOptions, Sew, Tolerance, mesh_parts, read_model, resolve, sew_model};
+use chordal::stages::{mesh_parts, part_uses, resolve, sew_parts};
+use chordal::{Cancel, MeshOptions, Sewing, Tolerance};
 use chordal_audit::{AuditOptions, audit_part};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Every face an island: no edge and no vertex is shared, the shells of a body are one open heap.
 fn unsewn(part: &Part) -> Part {
@@ -71,7 +73,7 @@ fn closed_shells(part: &Part) -> usize {
 }
 
 fn round_trip(path: &Path, mesh: bool) -> Outcome {
-    let mut model = read_model(path).expect("a model");
+    let mut model = chordal::Model::open(path).expect("a model").brep().clone();
     let mut outcome =
         Outcome { closed_before: model.parts.iter().map(closed_shells).sum(), ..Outcome::default() };
     if mesh {
@@ -81,7 +83,8 @@ fn round_trip(path: &Path, mesh: bool) -> Outcome {
         *part = unsewn(part);
     }
     let clock = std::time::Instant::now();
-    let reports = sew_model(&mut model, Sew::Auto);
+    let uses = part_uses(&model);
+    let (model, reports) = sew_parts(Arc::new(model), &uses, Sewing::Auto);
     outcome.seconds = clock.elapsed().as_secs_f64();
     for report in reports.iter().flatten() {
         outcome.open_before += report.open_before;
@@ -100,10 +103,11 @@ fn round_trip(path: &Path, mesh: bool) -> Outcome {
 
 /// Meshes and audits; returns the failed faces.
 fn tessellated(model: &Model, path: &Path, outcome: &mut Outcome) -> usize {
-    let options = JobOptions::default().with_tolerance(Tolerance::Percent(0.2));
+    let options = MeshOptions::default().with_tolerance(Tolerance::Percent(0.2));
     let cancel = Cancel::default();
-    let resolved = resolve(model, &options, None, path, &cancel).expect("a tolerance");
-    let meshed = mesh_parts(model, &resolved, &cancel, &|_| {});
+    let named = chordal::Model::from_brep(model.clone(), &path.display().to_string());
+    let resolved = resolve(&named, &options, &cancel).expect("a tolerance");
+    let meshed = mesh_parts(&named, &resolved, &cancel);
     let mut failed = 0;
     for ((part, of_part), asked) in model.parts.iter().zip(&meshed).zip(&resolved.parts) {
         failed += of_part.report.faces.iter().filter(|f| f.failed.is_some()).count();
@@ -155,7 +159,7 @@ const MESHED: [&str; 16] = [
 #[test]
 fn corpus_taken_apart_closes_again() {
     for path in step_files(&repository().join("corpus")) {
-        if read_model(&path).is_err() {
+        if chordal::Model::open(&path).is_err() {
             continue;
         }
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();

@@ -3,7 +3,7 @@
 #![cfg(feature = "methods")]
 
 use chordal::methods::{StrategyEntry, strategies};
-use chordal::{Bound, Closedness, Job, JobOptions, Report, Tolerance};
+use chordal::{Bound, Closedness, MeshOptions, Meshed, Mesher, Model, Report, Tolerance};
 use std::path::{Path, PathBuf};
 
 fn corpus(name: &str) -> PathBuf {
@@ -11,11 +11,12 @@ fn corpus(name: &str) -> PathBuf {
 }
 
 fn mesh(name: &str, strategy: &StrategyEntry, bound: Bound) -> Result<Report, String> {
-    let options = JobOptions::default()
+    let options = MeshOptions::default()
         .with_tolerance(Tolerance::Percent(0.5))
         .with_fill_method(strategy.fill_method())
         .with_bound(bound);
-    chordal::run(&Job::new(corpus(name)).with_options(options)).map(|o| o.report).map_err(|e| e.to_string())
+    let model = Model::open(corpus(name)).map_err(|e| e.to_string())?;
+    Mesher::new(options).mesh(&model).map(Meshed::into_report).map_err(|e| e.to_string())
 }
 
 /// Models whose every triangle counts for the time that a test may take.

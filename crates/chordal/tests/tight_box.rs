@@ -1,13 +1,14 @@
 //! The box that a percentage is a percentage of, against closed forms.
 
+use chordal::Cancel;
 use chordal::brep::Model;
 use chordal::nurbs::{DAffine3, DVec3};
-use chordal::{Cancel, edge_box, part_uses, tight_box};
+use chordal::stages::{edge_box, part_uses, tight_box};
 use std::path::Path;
 
 fn model(name: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus").join(name).with_extension("step");
-    chordal::read_model(&path).expect("a model of the corpus")
+    chordal::Model::open(&path).expect("a model of the corpus").brep().clone()
 }
 
 fn size(model: &Model) -> DVec3 {

@@ -100,17 +100,34 @@ impl Options {
         self.face_timeout = timeout;
         self
     }
+    pub fn with_face_triangles(mut self, triangles: usize) -> Self {
+        self.face_triangles = triangles;
+        self
+    }
 }
 
 /// A flag that stops the work from another thread.
 #[derive(Clone, Debug, Default)]
-pub struct Cancel(Arc<AtomicBool>);
+pub struct Cancel {
+    own: Arc<AtomicBool>,
+    outer: Option<Arc<AtomicBool>>,
+}
 
 impl Cancel {
+    /// Stops the work of everybody who looks at this flag or at a child of it.
     pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.own.store(true, Ordering::Relaxed);
     }
+
+    /// Whether the work is to stop.
     pub fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        let is_set = |flag: &Arc<AtomicBool>| flag.load(Ordering::Relaxed);
+        is_set(&self.own) || self.outer.as_ref().is_some_and(is_set)
+    }
+
+    /// A flag that this one sets as well. Setting the child leaves this one as it is. A child of a child looks at its
+    /// parent only.
+    pub fn child(&self) -> Self {
+        Self { own: Arc::default(), outer: Some(self.own.clone()) }
     }
 }

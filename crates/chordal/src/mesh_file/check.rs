@@ -1,8 +1,9 @@
 //! What is to be said about a mesh file, whoever wrote it.
 
-use crate::against::{AgainstReport, measure_against};
+use super::against::{AgainstReport, measure_against};
 use crate::edge_count::EdgeCount;
-use crate::{JobError, JobOptions};
+use crate::error::{Error, FileError};
+use crate::options::MeshOptions;
 use chordal_mesh::{TriangleSoup, import_mesh};
 use chordal_write::Unit;
 use glam::DVec3;
@@ -16,15 +17,21 @@ pub const CHECK_SCHEMA: &str = "chordal-check/1";
 /// What was found. Points are one where all bits of their coordinates agree, within one object of the file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CheckReport {
+    /// [`CHECK_SCHEMA`].
     pub schema: String,
+    /// The path of the file.
     pub path: String,
+    /// How many triangles.
     pub triangles: usize,
+    /// How many vertices.
     pub vertices: usize,
     /// No edge has a single triangle.
     pub closed: bool,
     /// The triangles of every edge run in opposite directions, in pairs.
     pub oriented: bool,
+    /// Edges with one triangle.
     pub open_edges: usize,
+    /// Edges whose triangles do not pair up in opposite directions.
     pub inconsistent_edges: usize,
     /// Triangles with two corners in one place, or with all three on a line.
     pub degenerate_triangles: usize,
@@ -60,9 +67,10 @@ impl CheckReport {
 pub fn check_mesh(
     path: &Path,
     unit: Option<Unit>,
-    against: Option<(&Path, &JobOptions)>,
-) -> Result<CheckReport, JobError> {
-    let mut soup = import_mesh(path).map_err(|e| JobError::Mesh { path: path.to_owned(), source: e })?;
+    against: Option<(&Path, &MeshOptions)>,
+) -> Result<CheckReport, Error> {
+    let mut soup =
+        import_mesh(path).map_err(|e| Error::file(&path.display().to_string(), FileError::Mesh(e)))?;
     soup.unit_mm = unit.map(Unit::millimetres).or(soup.unit_mm);
     let soup = soup.into_millimetres_z_up();
     let edges = EdgeCount::of(soup.triangles.iter().copied());

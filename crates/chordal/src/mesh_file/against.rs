@@ -11,10 +11,11 @@
 
 mod reference;
 
-use crate::job::read_model;
+use crate::error::Error;
 use crate::meshed_part::{MeshedPart, mesh_parts};
+use crate::model::Model;
+use crate::options::MeshOptions;
 use crate::resolve::{Resolved, resolve};
-use crate::{JobError, JobOptions};
 use chordal_audit::{TriangleTree, largest_distance};
 use chordal_mesh::TriangleSoup;
 use chordal_tessellate::Cancel;
@@ -32,6 +33,7 @@ const WORST: usize = 10;
 /// What was measured, in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AgainstReport {
+    /// The path of the CAD file.
     pub model: String,
     /// "branch and bound": the distances lie between those measured at samples and `…_at_most`; "measured":
     /// largest distances over samples, which are lower bounds.
@@ -47,7 +49,9 @@ pub struct AgainstReport {
     pub model_to_mesh_at_most: Option<f64>,
     /// Proven error of the fine mesh that stands for the model; `null` where one of its faces has no proof.
     pub reference_error: Option<f64>,
+    /// How many points of the mesh were measured.
     pub mesh_samples: usize,
+    /// How many points of the model were measured.
     pub model_samples: usize,
     /// Faces of the model that could not be meshed finely, and so were not compared.
     pub faces_not_compared: usize,
@@ -58,9 +62,13 @@ pub struct AgainstReport {
 /// One placed face.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct WorstFace {
+    /// The entity in the file, `#123`.
     pub id: String,
+    /// The kind of its surface.
     pub kind: String,
+    /// The name of its part.
     pub part: String,
+    /// Its largest measured distance from the mesh, in millimetres.
     pub distance: f64,
 }
 
@@ -72,16 +80,17 @@ pub struct WorstFace {
 pub fn measure_against(
     soup: &TriangleSoup,
     input: &Path,
-    options: &JobOptions,
-) -> Result<AgainstReport, JobError> {
+    options: &MeshOptions,
+) -> Result<AgainstReport, Error> {
     let cancel = Cancel::default();
-    let model = read_model(input)?;
-    let resolved = resolve(&model, options, None, input, &cancel)?;
-    let parts = mesh_parts(&model, &resolved, &cancel, &|_| ());
+    let opened = Model::open(input)?;
+    let model = opened.brep();
+    let resolved = resolve(model, options, &cancel).map_err(|error| error.named(opened.name()))?;
+    let parts = mesh_parts(model, &resolved, &cancel, &|_| ());
     let mesh_triangles: Vec<[DVec3; 3]> =
         soup.triangles.iter().map(|t| t.map(|i| soup.positions[i as usize])).collect();
     let mesh = TriangleTree::new(mesh_triangles.clone());
-    let reference = Reference::new(&model, &resolved, &parts);
+    let reference = Reference::new(model, &resolved, &parts);
 
     let samples = mesh_samples(soup);
     let mesh_to_model = reference.farthest(&samples);

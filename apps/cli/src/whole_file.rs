@@ -7,16 +7,11 @@ use std::path::Path;
 ///
 /// # Errors
 /// Those of the file system.
-pub fn write_whole(path: &Path, data: &str) -> io::Result<()> {
-    write_bytes(path, data.as_bytes())
-}
-
-/// As [`write_whole`], for any bytes.
-pub(crate) fn write_bytes(path: &Path, data: &[u8]) -> io::Result<()> {
+pub fn write_whole(path: &Path, data: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".chordal-").suffix(".part");
-    // Temporary files are private by default; a report gets the permissions of any new file.
+    // Temporary files are private by default; a new file gets the usual permissions.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -1,8 +1,9 @@
 //! Sewing of mesh files along their borders.
 
-use crate::JobError;
+use crate::error::{Error, FileError, RequestError};
+use crate::meshed::format_of;
 use crate::report::GapSurvey;
-use crate::sewing::Sew;
+use crate::sewing::Sewing;
 use chordal_mesh::{PassThrough, Scene, SceneNode, ScenePart, TriangleSoup, import_mesh};
 use chordal_sew::{MeshSewReport, SewTolerance, SewnMesh, sew_mesh};
 use chordal_write::{Format, Unit, WriteOptions, write_scene};
@@ -11,7 +12,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// The name and version of the schema of [`MeshSewingReport`].
-pub const SEW_SCHEMA: &str = "chordal-sew/1";
+pub const SEW_SCHEMA: &str = "chordal-sew/2";
 
 /// So many open borders are listed, the longest first.
 const LISTED: usize = 50;
@@ -21,7 +22,7 @@ const LISTED: usize = 50;
 #[non_exhaustive]
 pub struct MeshSewing {
     /// The merge tolerance; only `Auto` and `Millimetres` sew.
-    pub tolerance: Sew,
+    pub tolerance: Sewing,
     /// The unit of the file's coordinates, where it says none or the wrong one.
     pub unit: Option<Unit>,
     /// The format of the output; `None`: by its extension.
@@ -32,23 +33,27 @@ pub struct MeshSewing {
 
 impl Default for MeshSewing {
     fn default() -> Self {
-        Self { tolerance: Sew::Auto, unit: None, format: None, levels: 0 }
+        Self { tolerance: Sewing::Auto, unit: None, format: None, levels: 0 }
     }
 }
 
 impl MeshSewing {
-    pub fn with_tolerance(mut self, tolerance: Sew) -> Self {
+    /// Sets the merge tolerance.
+    pub fn with_tolerance(mut self, tolerance: Sewing) -> Self {
         self.tolerance = tolerance;
         self
     }
+    /// Sets the unit.
     pub fn with_unit(mut self, unit: Option<Unit>) -> Self {
         self.unit = unit;
         self
     }
+    /// Sets the format of the output.
     pub fn with_format(mut self, format: Option<Format>) -> Self {
         self.format = format;
         self
     }
+    /// Sets the number of coarser meshes.
     pub fn with_levels(mut self, levels: usize) -> Self {
         self.levels = levels;
         self
@@ -58,52 +63,71 @@ impl MeshSewing {
 /// What was done to a mesh file; lengths are millimetres where the unit is known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MeshSewingReport {
+    /// [`SEW_SCHEMA`].
     pub schema: String,
+    /// The path of the file.
     pub path: String,
     /// The merge tolerance, and how it was found where it was not given.
     pub tolerance: f64,
+    /// How the tolerance was found; `null` where the caller gave it.
     pub auto: Option<GapSurvey>,
+    /// Triangles of the file.
     pub triangles_before: usize,
+    /// Triangles of the result.
     pub triangles: usize,
     /// Edges with a single triangle, and the borders they form.
     pub open_before: usize,
+    /// The borders that they form.
     pub borders: usize,
     /// Stretches along which two borders were sewn, new vertices on borders, and vertices that became others.
-    pub sewn: usize,
+    pub joined: usize,
+    /// New vertices on borders.
     pub inserted: usize,
+    /// Vertices that became another one.
     pub merged: usize,
     /// Correspondences that were left out, because a vertex would have moved too far or a triangle vanished.
-    pub refused: usize,
+    pub rejected: usize,
+    /// Edges with one triangle afterwards.
     pub open_after: usize,
     /// The longest borders that stay open.
     pub open: Vec<OpenBorderEntry>,
+    /// The largest distance that a vertex moved.
     pub largest_move: f64,
     /// Triangles without area that were left out, and those whose normal turned by more than a right angle.
     pub degenerate: usize,
+    /// Triangles whose normal turned by more than a right angle.
     pub folded: usize,
     /// Triangles that were turned over, and edges that still contradict.
-    pub turned: usize,
+    pub flipped: usize,
+    /// Edges whose triangles still disagree.
     pub inconsistent: usize,
     /// Connected shells, and those without an open edge.
     pub shells: usize,
+    /// Those without an open edge.
     pub closed_shells: usize,
+    /// The coarser meshes that were written.
     pub levels: Vec<LevelEntry>,
 }
 
 /// A border that stays open.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OpenBorderEntry {
+    /// How many edges it has.
     pub edges: usize,
+    /// Its length.
     pub length: f64,
     /// The smallest and the largest distance of its edges' middles from another open edge.
     pub nearest: Option<[f64; 2]>,
+    /// A point of it.
     pub at: [f64; 3],
 }
 
 /// A coarser mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LevelEntry {
+    /// The path of the file.
     pub path: String,
+    /// Triangles of the result.
     pub triangles: usize,
     /// The decimator's own estimate of the distance from the sewn mesh.
     pub error: f64,
@@ -120,23 +144,19 @@ impl MeshSewingReport {
 ///
 /// # Errors
 /// Where the file cannot be read or nothing could be written.
-pub fn sew_mesh_file(
-    input: &Path,
-    output: &Path,
-    options: &MeshSewing,
-) -> Result<MeshSewingReport, JobError> {
+pub fn sew_mesh_file(input: &Path, output: &Path, options: &MeshSewing) -> Result<MeshSewingReport, Error> {
     if options.levels > 0 && !crate::levels::AVAILABLE {
-        let reason = "this build has no decimator for coarser levels (build with `--features levels`)";
-        return Err(JobError::Output { path: output.to_owned(), reason: reason.into() });
+        return Err(RequestError::MissingFeature { feature: "levels" }.into());
     }
-    let mut soup = import_mesh(input).map_err(|source| JobError::Mesh { path: input.to_owned(), source })?;
+    let mut soup = import_mesh(input)
+        .map_err(|source| Error::file(&input.display().to_string(), FileError::Mesh(source)))?;
     soup.unit_mm = options.unit.map(Unit::millimetres).or(soup.unit_mm);
     let soup = soup.into_millimetres_z_up();
-    let format = format_of(output, options.format)?;
+    let format = options.format.map_or_else(|| format_of(output), Ok)?;
     let tolerance = match options.tolerance {
-        Sew::Millimetres(mm) => SewTolerance::Length(mm),
-        Sew::Off => SewTolerance::Length(0.0),
-        Sew::Auto | Sew::WhereLoose => SewTolerance::Auto,
+        Sewing::Millimetres(mm) => SewTolerance::Length(mm),
+        Sewing::Off => SewTolerance::Length(0.0),
+        Sewing::Auto | Sewing::AutoIfUnshared => SewTolerance::Auto,
     };
     let (mesh, found) = sew_mesh(&soup.positions, &soup.triangles, tolerance, resolution(&soup));
     let mut report = MeshSewingReport::new(input, &soup, &mesh, &found);
@@ -159,14 +179,6 @@ fn resolution(soup: &TriangleSoup) -> Option<f64> {
     (largest > 0.0).then_some(8.0 * f64::from(f32::EPSILON) * largest)
 }
 
-fn format_of(output: &Path, format: Option<Format>) -> Result<Format, JobError> {
-    let by_extension = || output.extension().and_then(|e| e.to_str()).and_then(Format::from_extension);
-    format.or_else(by_extension).ok_or_else(|| JobError::Output {
-        path: output.to_owned(),
-        reason: "the extension names no format that can be written (stl, ply, obj, glb, gltf, 3mf)".into(),
-    })
-}
-
 /// `out.stl` → `out.level1.stl`.
 fn level_path(output: &Path, level: usize) -> PathBuf {
     let stem = output.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
@@ -174,11 +186,11 @@ fn level_path(output: &Path, level: usize) -> PathBuf {
     output.with_file_name(format!("{stem}.level{level}{extension}"))
 }
 
-fn write(mesh: &SewnMesh, soup: &TriangleSoup, output: &Path, format: Format) -> Result<(), JobError> {
+fn write(mesh: &SewnMesh, soup: &TriangleSoup, output: &Path, format: Format) -> Result<(), Error> {
     let scene = scene(mesh, soup);
     write_scene(&scene, output, &WriteOptions::new(format))
         .map(|_| ())
-        .map_err(|source| JobError::Write { path: output.to_owned(), source })
+        .map_err(|source| RequestError::Write { path: output.to_owned(), source }.into())
 }
 
 /// One part for every shell, named after the group that its first triangle came from.
@@ -243,16 +255,16 @@ impl MeshSewingReport {
             triangles: mesh.triangles.len(),
             open_before: found.open_before,
             borders: found.borders,
-            sewn: found.sewn,
+            joined: found.sewn,
             inserted: found.inserted,
             merged: found.merged,
-            refused: found.refused,
+            rejected: found.refused,
             open_after: found.open_after,
             open: open.collect(),
             largest_move: found.largest_move,
             degenerate: found.degenerate,
             folded: found.folded,
-            turned: found.turned,
+            flipped: found.turned,
             inconsistent: found.inconsistent,
             shells: found.shells,
             closed_shells: found.closed_shells,

@@ -2,10 +2,10 @@
 //!
 //! Cells are grey, triangles thin, the boundary is bold. Each direction is stretched to the face's own extent.
 
-use crate::JobError;
-use crate::meshed_part::MeshedPart;
-use chordal_mesh::FaceMesh;
-use chordal_nurbs::{DVec2, UvBox};
+use chordal::Meshed;
+use chordal::math::DVec2;
+use chordal::mesh::FaceMesh;
+use chordal::nurbs::UvBox;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -17,22 +17,19 @@ const SIZE: f64 = 900.0;
 ///
 /// # Errors
 /// Where the folder or a file cannot be written.
-pub(crate) fn write_drawings(folder: &Path, parts: &[MeshedPart]) -> Result<(), JobError> {
-    let failed = |e: std::io::Error| JobError::Output { path: folder.to_owned(), reason: e.to_string() };
-    std::fs::create_dir_all(folder).map_err(failed)?;
-    for (p, part) in parts.iter().enumerate() {
-        for (face, report) in part.mesh.faces.iter().zip(&part.report.faces) {
-            if !face.triangles.is_empty() {
-                let name = format!("part{p}_face{}.svg", face.face);
-                std::fs::write(folder.join(name), draw(face, &report.cells)).map_err(failed)?;
-            }
+pub fn write_drawings(folder: &Path, meshed: &Meshed) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    for face in meshed.faces() {
+        if let Some(mesh) = face.mesh().filter(|mesh| !mesh.triangles.is_empty()) {
+            let name = format!("part{}_face{}.svg", face.part().index(), mesh.face);
+            std::fs::write(folder.join(name), draw(mesh, face.cells()))?;
         }
     }
     Ok(())
 }
 
 /// One face. Writing to a string cannot fail, so results of `write!` are dropped.
-pub(crate) fn draw(face: &FaceMesh, cells: &[UvBox]) -> String {
+fn draw(face: &FaceMesh, cells: &[UvBox]) -> String {
     let corners = face.corners.iter().map(|c| c.uv);
     let whole = UvBox::from_points(corners.chain(cells.iter().flat_map(|c| [c.min, c.max])));
     let size = whole.size().max(DVec2::splat(f64::MIN_POSITIVE));
@@ -85,8 +82,8 @@ fn edges(face: &FaceMesh) -> (Edges, Edges) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use chordal_mesh::Corner;
-    use chordal_nurbs::DVec3;
+    use chordal::math::DVec3;
+    use chordal::mesh::Corner;
 
     #[test]
     fn a_square_has_one_inner_edge_and_four_around() {

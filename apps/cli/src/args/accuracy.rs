@@ -1,0 +1,87 @@
+//! What is requested of a mesh, and the threads.
+
+use super::values::*;
+use chordal::methods::{EdgeMethodEntry, StrategyEntry};
+use chordal::{Bound, InputFormat, MeshOptions, ReadOptions, Sewing, Tolerance, Winding};
+use clap::Args;
+
+/// What is requested of a mesh, and the threads.
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// Largest distance between the mesh and the exact surfaces: a length with its unit (0.1mm, 50um, 0.002in; a bare
+    /// number is in mm), or a percentage of the diagonal of the model's axis-aligned box (0.05%).
+    #[arg(
+        long, visible_aliases = ["sag", "linear-deflection"], value_name = "LENGTH|%", default_value = "0.1%",
+        allow_hyphen_values = true
+    )]
+    pub tolerance: Tolerance,
+    /// Separate tolerance for the edges of the model [default: same as --tolerance]. Facets that touch an edge may be as
+    /// far off as the larger of the two.
+    #[arg(long, value_name = "LENGTH|%", allow_hyphen_values = true)]
+    pub boundary_tolerance: Option<Tolerance>,
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face: 20deg, 0.35rad, a bare
+    /// number in degrees, or `off`.
+    #[arg(
+        long, visible_alias = "angular-deflection", value_name = "ANGLE", default_value = "20deg",
+        value_parser = parse_angle, allow_hyphen_values = true
+    )]
+    pub angle: AngleArg,
+    /// Longest mesh edge: a length with its unit (a bare number is in mm) [default: no limit].
+    #[arg(long, value_name = "LENGTH", value_parser = chordal::parse_length, allow_hyphen_values = true)]
+    pub max_edge: Option<f64>,
+    /// How points are placed and connected.
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = strategies())]
+    pub strategy: &'static StrategyEntry,
+    /// How edges become chords; every chord is proven against the edge itself.
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = edge_methods())]
+    pub edge_method: &'static EdgeMethodEntry,
+    /// How the error of a facet is determined.
+    #[arg(long, value_enum, default_value = "proven")]
+    pub bound: BoundArg,
+    /// Join free edges of neighbouring faces that are closer than this: a length (a bare number is in mm), `auto` (from the
+    /// resolution of the file and its gaps, see `info`) or `off` [default: auto for parts without shared edges, else off].
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub sew: Option<Sewing>,
+    /// Which points trimming loops keep, where the format does not distinguish outer loops from holes (Open Inventor,
+    /// VRML, X3D).
+    #[arg(long, value_enum, default_value = "odd")]
+    pub winding: WindingArg,
+    /// The format of the input [default: recognised by content].
+    #[arg(long, value_name = "FORMAT", value_parser = input_formats())]
+    pub input_format: Option<InputFormat>,
+    /// Number of threads [default: one per core]. The mesh is the same for any number.
+    #[arg(long, value_name = "N", value_parser = parse_jobs)]
+    pub jobs: Option<usize>,
+    /// Time limit per face in seconds, 0 for none.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
+    pub face_timeout: TimeoutArg,
+}
+
+impl AccuracyArgs {
+    /// As options of the library.
+    pub fn options(&self) -> MeshOptions {
+        let bound = match self.bound {
+            BoundArg::Proven => Bound::Proven,
+            BoundArg::Estimated => Bound::Estimated,
+        };
+        MeshOptions::default()
+            .with_tolerance(self.tolerance)
+            .with_boundary_tolerance(self.boundary_tolerance)
+            .with_angle(self.angle.0)
+            .with_max_edge(self.max_edge)
+            .with_fill_method(self.strategy.fill_method())
+            .with_edge_splitter(self.edge_method.edge_splitter())
+            .with_sewing(self.sew.unwrap_or_default())
+            .with_bound(bound)
+            .with_face_timeout(self.face_timeout.0)
+    }
+
+    /// As options of the readers.
+    pub fn read_options(&self) -> ReadOptions {
+        let winding = match self.winding {
+            WindingArg::Odd => Winding::Odd,
+            WindingArg::Even => Winding::Even,
+        };
+        ReadOptions::default().with_winding(winding)
+    }
+}

@@ -1,0 +1,35 @@
+// Meshes a CAD file with the WebAssembly module, in node:
+//
+//     node apps/wasm/mesh.mjs chordal_wasm.wasm part.step 0.1 out.ply
+//
+// The tolerance is in millimetres; the output is PLY, or GLB by its extension.
+
+import { readFileSync, writeFileSync } from "node:fs";
+
+const [modulePath, inputPath, tolerance, outputPath] = process.argv.slice(2);
+if (outputPath === undefined) {
+  console.error("usage: node mesh.mjs chordal_wasm.wasm INPUT TOLERANCE_MM OUTPUT");
+  process.exit(2);
+}
+
+const { instance } = await WebAssembly.instantiate(readFileSync(modulePath), {});
+const chordal = instance.exports;
+
+const input = readFileSync(inputPath);
+const address = chordal.chordal_allocate(input.length);
+// The memory may move when it grows: its view is made anew whenever it is needed.
+new Uint8Array(chordal.memory.buffer, address, input.length).set(input);
+
+const format = outputPath.endsWith(".glb") ? 1 : 0;
+const code = chordal.chordal_mesh(Number(tolerance), format);
+const result = new Uint8Array(
+  chordal.memory.buffer,
+  chordal.chordal_result(),
+  chordal.chordal_result_length(),
+);
+if (code === 2) {
+  console.error(`chordal: ${new TextDecoder().decode(result)}`);
+} else {
+  writeFileSync(outputPath, result);
+}
+process.exit(code);
