@@ -157,8 +157,10 @@ pub(crate) struct Seeds {
 /// The share of the spacing of the samples within which a place is near enough.
 const NEAR_ENOUGH: f64 = 1e-3;
 
-/// Ellipses are needles where their half axes differ by more than this: both of their sides are then nearer to a point
-/// than its place along the curve tells.
+/// The ratio of the half axes from which on an ellipse is sampled as a needle.
+///
+/// Both of its sides are then close together, so a place found near the last one may be on the wrong side. A
+/// larger ratio would accept such places; a smaller one would search ordinary ellipses in vain.
 const NEEDLE: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -168,7 +170,10 @@ struct Seed {
     piece: usize,
 }
 
-/// Valleys that are followed down, best sample first.
+/// The number of local minima of the sampled distance that are followed down, the nearest first.
+///
+/// More of them rarely change the result and cost Newton's iterations each; fewer may miss the closest point
+/// where samples are coarse.
 const VALLEYS: usize = 4;
 
 impl Seeds {

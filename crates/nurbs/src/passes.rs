@@ -7,7 +7,8 @@
 //! ```text
 //! knot table      t and the 2k knots u_{s−p} … u_{s+p+1} around its span s        k = p + 1
 //! first table     0 … 0 1 0: the basis functions of degree 0 with indices s−p … s+1
-//! pass d = 1…p    N_i ← (t − u_i)/(u_{i+d} − u_i)·N_i + (u_{i+d+1} − t)/(u_{i+d+1} − u_{i+1})·N_{i+1}        0/0 = 0
+//! pass d = 1…p    N_i ← (t − u_i)/(u_{i+d} − u_i)·N_i + (u_{i+d+1} − t)/(u_{i+d+1} − u_{i+1})·N_{i+1}
+//!                 (0/0 = 0)
 //! last pass       rows times the control points that they belong to, summed
 //! ```
 //!

@@ -14,7 +14,10 @@ use crate::{CompositeSegment, Curve, Range};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Pieces into which curves without a closed form are cut to bound them.
+/// The number of pieces into which a curve without a closed form is cut to bound its chord.
+///
+/// The bound max|c''| Δ²/8 of a piece shrinks with the square of their number, the cost grows with it. Fewer
+/// pieces give more chords than needed.
 const PIECES: usize = 8;
 
 /// Rounding of an evaluation, relative to the largest coordinate in play.
@@ -232,7 +235,10 @@ impl Curve {
     }
 }
 
-/// Pieces an offset is cut into before its bound is given up.
+/// The most pieces into which an offset curve is cut before its derivatives count as unbounded.
+///
+/// Short pieces tell a cusp from a piece that only turns fast. A curve with a true cusp has no bound with any
+/// number of pieces, so the search must end.
 const OFFSET_CUTS: usize = 64;
 
 /// With w = basis' × reference and n its unit vector, a, b, c bounds of |w'|, |w''|, |w'''| over the least

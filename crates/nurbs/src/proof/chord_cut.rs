@@ -6,8 +6,8 @@
 //! ```text
 //! point   f · max ‖b_i − ((n−i) b_0 + i b_n)/n‖      to the point of the chord at the same parameter
 //! line    f · max ‖b_i − b_0 b_n‖                    to the chord as a segment
-//! f = 1 − 2^(1−n)                                    polynomial: the two ends hold at least 2^(1−n) of the basis
-//! f = 1                                              rational, weights of one sign
+//! f = 1 − 2^(1−n)         polynomial: the two ends hold at least 2^(1−n) of the basis
+//! f = 1                   rational, weights of one sign
 //! ```
 //!
 //! Both bound the Hausdorff distance of curve and chord: the nearest points of the chord run from one end of
@@ -34,7 +34,10 @@ pub enum ChordCut {
     WorstPoint,
 }
 
-/// No curve is cut more often than this on the way to one chord.
+/// The most cuts on the way from the whole curve to one chord.
+///
+/// Each cut at least halves the parameter, so a deeper chord would be shorter than rounding. The limit ends
+/// the recursion for tolerances below rounding.
 const DEEPEST: u32 = 40;
 
 impl<V: Vector> BezierCurve<V> {

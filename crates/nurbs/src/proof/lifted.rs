@@ -10,7 +10,10 @@ use crate::vector::largest;
 use crate::{Curve, Curve2, LiftOptions, LiftedPiece, Range, Surface, SurfaceBounds, UvBox};
 use glam::DVec2;
 
-/// Exact curves of higher degrees than this cost more than the chain rule.
+/// The highest degree at which a curve on a spline surface is composed exactly to bound its chord.
+///
+/// The work of the composition grows with the square of the degree. Above this degree the chain rule over
+/// enclosures is cheaper; it is looser, so a lower value gives more chords.
 const EXACT_DEGREE: usize = 40;
 
 /// Upper bound of the two-sided distance between the curve over `range` and the chord between its ends;
@@ -37,7 +40,10 @@ pub(super) fn exact_chord_error(surface: &Surface, curve: &Curve2, range: Range)
     Some(largest(pieces.iter().map(|piece| hull_to_chord(&piece.xyz, chord) + piece.error)))
 }
 
-/// Parameters may leave the domain by this share of it: rounding.
+/// How far parameters may leave the domain, as a share of it, and still count as inside.
+///
+/// Readers compute curves that end on the border of the domain to some units in the last place. Without this
+/// slack such a curve would lose its exact bound.
 const OUTSIDE: f64 = 1e-13;
 
 /// Norms of Su, Sv, Suu, Suv, Svv over a box.

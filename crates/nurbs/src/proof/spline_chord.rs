@@ -19,8 +19,11 @@ use crate::segment::segment_distance;
 use crate::vector::largest;
 use crate::{BezierCurve, NurbsCurve, Range, Vector, basis, bernstein, blossom};
 
-/// Derivatives over shorter parts of a span are bounded over a part of this share: differences of control
-/// points over a tiny range are all rounding.
+/// The shortest part of a knot span over which derivatives are bounded by themselves; over shorter parts the
+/// bound is that of a part of this length around them.
+///
+/// Differences of control points over a tiny range are all rounding. A smaller share gives bounds that grow
+/// without limit as the range shrinks; a larger one gives bounds that are looser than need be.
 const SHORTEST_SHARE: f64 = 1.0 / 1024.0;
 
 impl<V: Vector> NurbsCurve<V> {

@@ -20,13 +20,18 @@ pub struct Pole {
 /// Samples of a profile to each smooth piece between which it comes near the axis at most once.
 const PROFILE_SAMPLES: u32 = 16;
 
-/// How far to search profiles without ends (parabola, hyperbola), in their parameter.
+/// How far profiles without ends (parabola, hyperbola) are searched for poles, in their parameter.
+///
+/// At 16 a hyperbola is four million times its half axis away, farther than any face reaches.
 const ENDLESS: f64 = 16.0;
 
 /// Steps into the domain, as parts of it, at which the limit of a normal is taken; short ones first.
 const STEPS: [f64; 4] = [1e-7, 1e-6, 1e-5, 1e-4];
 
-/// Sines below this between Su and Sv are rounding.
+/// The sine of the angle between Su and Sv below which they are taken for parallel.
+///
+/// The cross product of such vectors has no digits that are right. A larger value would find poles on slanted
+/// parametrisations; a smaller one would return normals made of rounding.
 const FLAT: f64 = 1e-9;
 
 impl Surface {

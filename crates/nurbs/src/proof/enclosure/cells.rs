@@ -10,11 +10,16 @@ use crate::{NurbsSurface, Range, UvBox};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 
-/// Cells are at most this many times halved.
+/// The largest number of times that the cells of a patch are halved in each direction.
+///
+/// Enclosures shrink with the fourth power of the size, so five levels make them a million times smaller.
+/// More levels cost memory for facets that are far below any tolerance.
 const MAX_LEVEL: usize = 5;
 
-/// Slack that a cell may add to a facet as large as itself, as a share of the resolution: no level is finer
-/// than that needs.
+/// What a cell may add to the bound of a facet as large as itself, as a share of the resolution.
+///
+/// It decides how fine the levels of a patch are. A larger share makes bounds looser, and meshes larger; a
+/// smaller one makes more cells, whose making takes longer than what the tighter bounds save.
 const SLACK: f64 = 0.02;
 
 /// The cells of one patch at one pair of levels, row by row.

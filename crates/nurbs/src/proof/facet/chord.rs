@@ -4,7 +4,10 @@ use super::form::Form;
 use crate::{Piece, SurfaceBounds, UvBox};
 use glam::{DVec2, DVec3};
 
-/// A chord that bends by less than this share of its length bends to no side in particular.
+/// A chord whose middle bends by less than this share of its length is taken for straight.
+///
+/// The direction of a smaller bend is mostly rounding; the surface's normal then gives the direction across
+/// the chord. The value only changes how tight the bound is, not whether it holds.
 const STRAIGHT: f64 = 1e-7;
 
 /// See [`super::chord_bound`]: the distance from the chord at the ends of equal parts of the segment, and

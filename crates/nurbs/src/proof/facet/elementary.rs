@@ -4,8 +4,10 @@ use super::{Facet, FacetBound, lattice};
 use crate::Frame;
 use glam::DVec3;
 
-/// Facets that turn further round an axis than this (radians) are rejected: at π the projection from the axis
-/// folds.
+/// The largest angle in radians by which a facet may turn round an axis.
+///
+/// At π the projection from the axis folds, and the closed forms are no bounds any more. The margin keeps the
+/// facets away from there; facets of that size are never within a sensible tolerance.
 const MAX_TURN: f64 = 2.6;
 
 /// The largest distance from a chord between radii `a` and `b`, the angle `turn` apart, to the cone (before

@@ -10,7 +10,11 @@ use super::{Facet, lattice_point};
 use crate::SurfaceBounds;
 use glam::DVec3;
 
-/// The finest lattice cuts edges into so many parts.
+/// The number of parts into which the finest lattice cuts each edge of a facet.
+///
+/// Enclosures between its points are 256 times smaller than over the facet. A finer lattice would cost more
+/// evaluations than cutting the facet; a coarser one would reject facets that are within the tolerance. It is
+/// a power of two, because triangles of coarser lattices are halved down to it.
 pub(super) const FINEST: usize = 16;
 
 /// Errors along the normal at the points (i, j) of the finest lattice, weights (i, j, 16 − i − j)/16; NaN
