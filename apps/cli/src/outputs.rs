@@ -3,6 +3,7 @@
 use crate::args::MeshArgs;
 use crate::inputs::Input;
 use chordal::{OutputFormat, Report};
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -129,13 +130,11 @@ impl Outputs {
         for target in &self.targets {
             let Target::File(path) = target else { continue };
             let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-            if !self.staging.contains_key(&folder) {
-                let there = if folder.as_os_str().is_empty() { Path::new(".") } else { &folder };
-                let made = tempfile::Builder::new().prefix(".chordal-").tempdir_in(there);
-                let made =
-                    made.map_err(|e| format!("{}: cannot write to the folder: {e}", there.display()))?;
-                self.staging.insert(folder, made);
-            }
+            let Entry::Vacant(entry) = self.staging.entry(folder) else { continue };
+            let there = if entry.key().as_os_str().is_empty() { Path::new(".") } else { entry.key() };
+            let made = tempfile::Builder::new().prefix(".chordal-").tempdir_in(there);
+            let made = made.map_err(|e| format!("{}: cannot write to the folder: {e}", there.display()))?;
+            entry.insert(made);
         }
         Ok(())
     }

@@ -142,7 +142,7 @@ mod drawing {
                 StyleArg::Curvature => "mean curvature, 1/mm",
                 _ => "distance from the exact surface, mm",
             };
-            let (low, high) = (number(f64::from(legend.low), 4), number(f64::from(legend.high), 4));
+            let (low, high) = (number(legend.low, 4), number(legend.high, 4));
             say(&format!("colours from {low} to {high} ({what})"));
         }
     }
