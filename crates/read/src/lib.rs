@@ -49,6 +49,7 @@ mod locate;
 mod number;
 #[cfg(feature = "obj")]
 mod obj;
+mod readers;
 #[cfg(feature = "rhino")]
 mod rhino;
 #[cfg(feature = "scene")]

@@ -1,13 +1,27 @@
 //! A part under construction: what of it exists already, by entity.
 
 use super::document::{Bad, Doc, Ix, Res};
-use super::topology::{EdgeRow, KnownEdge};
 use crate::assemble::PartBuilder;
 use crate::trimmed::Look;
-use chordal_brep::{FaceId, VertexId};
+use chordal_brep::{EdgeId, FaceId, VertexId};
 use chordal_nurbs::{DAffine3, DVec3};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
+
+/// A row of an edge list: a curve, and its ends as a list with a position in it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgeRow {
+    pub curve: Ix,
+    pub ends: [(Ix, usize); 2],
+}
+
+/// An edge that exists already.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KnownEdge {
+    pub id: EdgeId,
+    /// The part's edge runs against the list's start and end.
+    pub swapped: bool,
+}
 
 /// A part under construction.
 #[derive(Debug)]

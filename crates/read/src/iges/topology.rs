@@ -1,7 +1,7 @@
 //! Manifold solids: lists of vertices (502) and edges (504), loops (508), faces (510), shells (514), solids (186).
 
 use super::boundaries::directed;
-use super::builder::Builder;
+use super::builder::{Builder, EdgeRow, KnownEdge};
 use super::curves::{Segment, joined, segments, segments2};
 use super::document::{Args, Ix, Res};
 use super::matrix;
@@ -15,21 +15,6 @@ use chordal_brep::{
 };
 use chordal_nurbs::{Curve, DAffine3, DVec3, Range};
 use std::sync::Arc;
-
-/// A row of an edge list: a curve, and its ends as a list with a position in it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct EdgeRow {
-    pub curve: Ix,
-    pub ends: [(Ix, usize); 2],
-}
-
-/// An edge that exists already.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct KnownEdge {
-    pub id: EdgeId,
-    /// The part's edge runs against the list's start and end.
-    pub swapped: bool,
-}
 
 /// A curve's end is at its vertex within this part of the edge's size.
 const AT_VERTEX: f64 = 1e-3;

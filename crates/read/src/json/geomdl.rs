@@ -3,7 +3,7 @@
 //! As geomdl's own tessellator has it, a trim cuts away what it encloses unless its `reversed` is 1, when it keeps only
 //! that. Trims may lie partly beyond the surface; they end where it does.
 
-use super::trims::{Sense, trim_loop};
+use super::trims::{ControlPoints, Sense, trim_loop};
 use crate::assemble::Notes;
 use crate::flat::{self, LengthUnit};
 use crate::trimmed::{Look, TrimLoop, add_body, add_faces, add_failed};
@@ -23,12 +23,6 @@ struct Shape {
     #[serde(default, rename = "type")]
     kind: String,
     data: Vec<Value>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct ControlPoints {
-    pub points: Vec<Vec<f64>>,
-    pub weights: Option<Vec<f64>>,
 }
 
 #[derive(Deserialize)]

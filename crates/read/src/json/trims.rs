@@ -1,6 +1,5 @@
 //! geomdl's trims: one curve or several in a container, as loops.
 
-use super::geomdl::ControlPoints;
 use crate::assemble::Notes;
 use crate::trimmed::{Piece, Role, TrimLoop};
 use chordal_brep::{ReadIssue, Source};
@@ -11,6 +10,13 @@ use serde_json::Value;
 /// Ends nearer to each other or to the border of the domain than this share of it are there; geomdl's own tolerance is
 /// 1e-7 of its unit domain.
 const MEETS: f64 = 1e-7;
+
+/// The control points of a curve or surface, and their weights.
+#[derive(Deserialize)]
+pub(super) struct ControlPoints {
+    pub points: Vec<Vec<f64>>,
+    pub weights: Option<Vec<f64>>,
+}
 
 /// The `reversed` of a trim or a surface: 0, 1, true, false, null or nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
