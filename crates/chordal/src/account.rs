@@ -13,6 +13,7 @@ use crate::options::MeshOptions;
 use crate::placement::PartUse;
 use crate::report::*;
 use crate::resolve::Resolved;
+use chordal_audit::FaceCrossing;
 use chordal_brep::{Issue, Model, Part, ResultIssue, Severity, Source};
 use chordal_sew::SewReport;
 use chordal_write::{WriteSummary, WriteWarning};
@@ -136,6 +137,7 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
         inconsistent_edges: audited.shells.iter().map(|s| s.inconsistent_edges).sum(),
         degenerate_triangles: audited.degenerate_triangles,
         duplicate_triangles: audited.duplicate_triangles,
+        self_intersections: audited.self_intersections.iter().map(|c| self_intersection(part, c)).collect(),
     });
     report.tessellated_input.extend(part.tessellated.iter().map(|item| TessellatedInput {
         entity: entity_name(item.source),
@@ -202,5 +204,12 @@ fn write_issue(warning: &WriteWarning) -> ResultIssue {
         WriteWarning::Collapsed { triangles } => ResultIssue::CollapsedTriangles { triangles },
         WriteWarning::Sheared { placements } => ResultIssue::Sheared { placements },
         _ => ResultIssue::EmptyFile,
+    }
+}
+
+fn self_intersection(part: &Part, crossing: &FaceCrossing) -> SelfIntersection {
+    SelfIntersection {
+        faces: crossing.faces.map(|f| entity_name(part.faces[f as usize].source)),
+        triangle_pairs: crossing.facet_pairs,
     }
 }

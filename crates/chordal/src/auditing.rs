@@ -2,7 +2,7 @@
 
 use crate::meshed_part::MeshedPart;
 use crate::resolve::Resolved;
-use chordal_audit::{AuditOptions, Claim, Problem, Subject, audit_part};
+use chordal_audit::{AuditOptions, Claim, FaceCrossing, Problem, Subject, audit_part};
 use chordal_brep::{AuditIssue, Issue, Model, Part};
 use chordal_tessellate::{Bound, FaceReport, Options};
 use rayon::prelude::*;
@@ -13,6 +13,8 @@ pub(crate) struct AuditedPart {
     pub shells: Vec<AuditedShell>,
     pub degenerate_triangles: usize,
     pub duplicate_triangles: usize,
+    /// Faces of closed shells whose triangles cut each other.
+    pub self_intersections: Vec<FaceCrossing>,
     /// What is wrong with it, with the index of the face where it is one.
     pub problems: Vec<(Option<u32>, Issue)>,
 }
@@ -75,6 +77,7 @@ fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options, scale: f64) ->
         shells: shells.collect(),
         degenerate_triangles: audit.degenerate_triangles,
         duplicate_triangles: audit.duplicate_triangles,
+        self_intersections: audit.self_intersections,
         problems: audit
             .problems
             .into_iter()

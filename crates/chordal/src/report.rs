@@ -209,6 +209,19 @@ pub struct PartEntry {
     pub degenerate_triangles: usize,
     /// Triangles over the same three vertices as another one.
     pub duplicate_triangles: usize,
+    /// Faces of closed shells whose triangles cut each other.
+    #[serde(default)]
+    pub self_intersections: Vec<SelfIntersection>,
+}
+
+/// Two faces of a closed shell whose triangles cut each other; twice the same where a face cuts itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SelfIntersection {
+    /// The entities of the faces in the file, `#123`.
+    pub faces: [Option<String>; 2],
+    /// Pairs of triangles that cut each other.
+    pub triangle_pairs: usize,
 }
 
 /// A curve or point that belongs to no face.
