@@ -28,6 +28,7 @@ pub fn record_panics() {
         if let (Ok(mut place), Some(at)) = (PLACE.lock(), info.location()) {
             *place = Some(format!("{}:{}", at.file(), at.line()));
         }
+        chordal::tessellate::remember_panic(info);
     }));
 }
 

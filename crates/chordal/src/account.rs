@@ -117,6 +117,13 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
     if instances > 0 {
         meshed.add_stages(&mut report.stages);
     }
+    // Where the default mesher took over from a method, nothing is missing.
+    let is_missing = meshed.report.faces.iter().any(|face| face.failed.is_some());
+    let severity = if is_missing { Severity::Error } else { Severity::Warning };
+    for (edge, fault) in &meshed.report.edge_faults {
+        let issue = Issue::new(severity, part.edges[*edge as usize].source, fault.clone());
+        report.problems.push(Problem::new(&issue).in_part(&part.name));
+    }
     let input_triangles: usize = part.tessellated.iter().map(|t| t.triangles.len()).sum();
     let input_points: usize = part.tessellated.iter().map(|t| t.points.len()).sum();
     report.triangles += instances * (meshed.mesh.triangle_count() + input_triangles);

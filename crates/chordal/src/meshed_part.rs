@@ -21,8 +21,7 @@ pub struct MeshedPart {
 impl MeshedPart {
     /// Adds the methods that ran for the faces and edges of the part.
     pub(crate) fn add_stages(&self, stages: &mut Vec<StageEntry>) {
-        let of_faces = self.report.faces.iter().flat_map(|f| f.trace.parts()).map(|p| (1, p));
-        for (faces, (name, count)) in self.report.edge_trace.parts().map(|p| (0, p)).chain(of_faces) {
+        for (name, faces, count) in self.report.stages() {
             match stages.iter_mut().find(|s| s.name == name) {
                 Some(stage) => {
                     stage.faces += faces;

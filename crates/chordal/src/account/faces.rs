@@ -49,6 +49,9 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
     if of_face.untangled > 0 {
         problem(Severity::Warning, MeshIssue::LoopsUntangled { crossings: of_face.untangled }.into());
     }
+    if let Some(fault) = &of_face.mended {
+        problem(Severity::Warning, fault.clone().into());
+    }
     if status == FaceStatus::Meshed {
         match proven_error.map(|error| error + rounding) {
             Some(error) => {
