@@ -29,6 +29,8 @@ done
 crates=$(cargo metadata --no-deps --format-version 1 | python3 -c '
 import json, sys
 for package in json.load(sys.stdin)["packages"]:
+    if package["publish"] == []:
+        continue
     fields = ("description", "license", "repository", "homepage", "readme", "keywords", "categories", "rust_version")
     missing = [field for field in fields if not package[field]]
     print(package["name"], ",".join(missing) or "-")

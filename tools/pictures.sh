@@ -10,7 +10,7 @@ Usage: tools/pictures.sh FOLDER [MODEL…]
 Without models: fourteen of the corpus, with trims that break tessellators and solids to be looked at close up.
 
 Environment:
-  CHORDAL   the program, built with the feature `render` [default: target/release/chordal]
+  CHORDAL   the program, built with the feature `gpu` [default: target/release/chordal]
   SIZE      size of a picture [default: 480x360]
 TEXT
 }

@@ -6,7 +6,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 if [ $# -gt 0 ]; then
     echo "Usage: tools/readme_pictures.sh"
     echo "Writes docs/pictures/bracket_{exact,mesh,error}.png."
-    echo "CHORDAL names the program, built with the feature \`render\` [default: target/release/chordal]."
+    echo "CHORDAL names the program, built with the feature \`gpu\` [default: target/release/chordal]."
     case $1 in -h | --help) exit 0 ;; *) exit 2 ;; esac
 fi
 

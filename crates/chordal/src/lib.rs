@@ -35,6 +35,11 @@
 //! [`mesh`], [`write`](mod@write), [`document`].
 #![deny(missing_docs)]
 
+/// The README's example, compiled as a test of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
+
 mod account;
 mod analytic;
 mod area;
