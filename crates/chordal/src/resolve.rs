@@ -9,6 +9,9 @@ use chordal_brep::{Model, Source};
 use chordal_tessellate::{Cancel, Options};
 use chordal_write::Format;
 
+/// Measuring the box of the model may take this part of the time that a face has.
+const BOX_SHARE: u32 = 4;
+
 /// A tolerance below this many units in the last place of the largest coordinate is refused: evaluating a surface
 /// costs some tens of roundings, so nothing finer can be proven.
 const FLOOR_ULPS: f64 = 64.0;
@@ -71,7 +74,8 @@ pub(crate) fn resolve(
     let edges = edge_box(model, &uses);
     let requested = [Some(options.tolerance()), options.boundary_tolerance()];
     let relative = requested.iter().flatten().any(|t| matches!(t, Tolerance::Percent(_)));
-    let face_timeout = options.mesher().face_timeout;
+    // A face that takes longer counts by its control points: the box is no reason to spend the face's time twice.
+    let face_timeout = options.mesher().face_timeout.map(|timeout| timeout / BOX_SHARE);
     let size = if relative { tight_box(model, &uses, edges, face_timeout, cancel) } else { edges };
     let diagonal = relative.then(|| size.diagonal());
     let millimetres = |tolerance: Tolerance| match tolerance {

@@ -1,7 +1,6 @@
 //! One face with the edges as they are: attempts, each with more remedies than the last ([`crate::effort`]).
 
 use crate::chart::FaceContext;
-use crate::clock::Deadline;
 use crate::crossings::{coarse_chords, shut_corners};
 use crate::effort::{Effort, Remedy, Setback};
 use crate::face_mesh::{FaceMesh, boundary_triangles, shape, sweep_axis};
@@ -35,6 +34,9 @@ pub(crate) fn mesh_face(
             Err(setback @ (Setback::CoarseEdges(_) | Setback::Failed(_))) => return Err(setback),
             Err(setback) => setback,
         };
+        if context.is_out_of_time() {
+            return Err(MeshIssue::OutOfTime { elements: 0 }.into());
+        }
         effort = effort.after(&setback).ok_or(MeshIssue::SeamTooCoarse)?;
     }
 }
@@ -47,7 +49,6 @@ fn attempt(
     cancel: &Cancel,
     effort: Effort,
 ) -> Result<Box<FaceResult>, Setback> {
-    let deadline = options.face_timeout.and_then(Deadline::after);
     let edges_are_final = effort.has(Remedy::CrossingLoops);
     // A face without area has no triangles, and its neighbours meet where it lies.
     let nothing = || Ok(Box::new(FaceResult { bound: "no area", ..FaceResult::default() }));
@@ -71,7 +72,7 @@ fn attempt(
     let mut face = FaceMesh::new(context, limits, chart, shape, triangles, &options.bulk);
     // 3. Fill it and prove it.
     let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
-    let mut prover = Prover::new(&bounds, limits, options, deadline, cancel, effort);
+    let mut prover = Prover::new(&bounds, limits, options, context.deadline, cancel, effort);
     if are_loops_crossing && face.is_turned_somewhere() {
         prover = prover.for_crossing_loops();
     }
@@ -93,6 +94,9 @@ fn attempt(
     Ok(Box::new(result))
 }
 
+/// Loops that cross are not cut into ears where they have more points than this: the time grows with the square.
+const MOST_EARS: usize = 20_000;
+
 /// Triangles of loops that cross: as good as they can be, where the loops cross in truth.
 ///
 /// # Errors
@@ -105,6 +109,9 @@ fn crossing_triangles(
     effort: Effort,
 ) -> Result<Vec<[u32; 3]>, Setback> {
     let coarse = coarse_chords(context, chart, culprits);
+    if context.is_out_of_time() || points.len() > MOST_EARS {
+        return Err(MeshIssue::LoopsCross.into());
+    }
     if !effort.has(Remedy::CrossingLoops) && !coarse.is_empty() {
         return Err(Setback::CoarseEdges(coarse));
     }

@@ -5,6 +5,7 @@
 //! by whole periods; where a loop passes through a pole, both sides' parameters are kept as two chart points of one
 //! vertex.
 
+use crate::clock::Deadline;
 use crate::edges::EdgeSamples;
 use crate::keys::{ChartPoint, Key, Segment, SharedEdge};
 use crate::surface::{FaceSurface, Near};
@@ -30,6 +31,8 @@ pub(crate) struct FaceContext<'a, 's> {
     pub edges: &'a [EdgeSamples],
     /// Inner edges that it must do without: another face has them.
     pub doubled: &'a [SharedEdge],
+    /// When the face is given up.
+    pub deadline: Option<Deadline>,
     /// Loops of the face meet in vertices: each is one place in the chart.
     pub touching: bool,
     /// Points nearer together than this are the same point.
@@ -55,6 +58,11 @@ impl Run {
 }
 
 impl FaceContext<'_, '_> {
+    /// True where the time of the face is over.
+    pub fn is_out_of_time(&self) -> bool {
+        self.deadline.is_some_and(Deadline::is_over)
+    }
+
     /// All loops of the face with the interior on their left in the chart, and the vertices of vertex loops.
     ///
     /// # Errors

@@ -76,19 +76,23 @@ fn cpu_seconds(_: Kind) -> Option<f64> {
     None
 }
 
-/// A moment after which work is given up.
+/// When work is given up: after so much CPU time of the thread that made the deadline. Other work on the machine does not
+/// count, so that it does not decide which faces are given up.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Deadline(std::time::Instant);
+pub(crate) struct Deadline {
+    watch: Stopwatch,
+    seconds: f64,
+}
 
 impl Deadline {
-    /// The moment this long from now; none where the platform has no clock.
+    /// This much of the thread's time from now; none where the platform has no clock.
     pub fn after(time: Duration) -> Option<Self> {
-        now().map(|now| Self(now + time))
+        now().map(|_| Self { watch: Stopwatch::of_thread(), seconds: time.as_secs_f64() })
     }
 
-    /// True from that moment on.
+    /// True from that moment on; for the thread that made it.
     pub fn is_over(self) -> bool {
-        now().is_some_and(|now| now > self.0)
+        self.watch.seconds() > self.seconds
     }
 }
 
@@ -116,7 +120,10 @@ mod tests {
     fn a_deadline_passes() {
         let deadline = Deadline::after(Duration::from_millis(5)).expect("this platform has a clock");
         assert!(!deadline.is_over());
-        std::thread::sleep(Duration::from_millis(10));
+        let watch = Stopwatch::of_thread();
+        while watch.seconds() < 0.01 {
+            std::hint::black_box(watch);
+        }
         assert!(deadline.is_over());
         let later = Deadline::after(Duration::from_secs(1000)).expect("this platform has a clock");
         assert!(!later.is_over());

@@ -27,6 +27,12 @@ const STRAIGHT: f64 = 1e-9;
 /// Loops with more points than this are not searched for crossings.
 const MAX_POINTS: usize = 50_000;
 
+/// The search for crossings ends at so many: the chords found are made finer first.
+const MOST_PAIRS: usize = 20_000;
+
+/// The clock is looked at once in so many sides.
+const SIDES_PER_LOOK: usize = 64;
+
 /// One segment of a loop.
 struct Side {
     uv: [DVec2; 2],
@@ -46,7 +52,7 @@ pub(crate) fn coarse_chords(
     let mut crossings = 0;
     if chart.points.len() <= MAX_POINTS {
         let sides = sides(context, chart);
-        for (i, j) in crossing_pairs(&sides) {
+        for (i, j) in crossing_pairs(context, &sides) {
             crossings += 1;
             for (side, other) in [(&sides[i], &sides[j]), (&sides[j], &sides[i])] {
                 let Segment::Edge { edge, chord } = side.segment else { continue };
@@ -163,13 +169,17 @@ fn distance_to(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
 }
 
 /// Sides that cross between their ends, found along x.
-fn crossing_pairs(sides: &[Side]) -> Vec<(usize, usize)> {
+fn crossing_pairs(context: &FaceContext<'_, '_>, sides: &[Side]) -> Vec<(usize, usize)> {
     let low = |i: usize| sides[i].uv[0].min(sides[i].uv[1]);
     let high = |i: usize| sides[i].uv[0].max(sides[i].uv[1]);
     let mut order: Vec<usize> = (0..sides.len()).collect();
     order.sort_unstable_by(|&i, &j| low(i).x.total_cmp(&low(j).x).then(i.cmp(&j)));
     let mut pairs = Vec::new();
     for (k, &i) in order.iter().enumerate() {
+        // What is found so far is enough to go on with.
+        if pairs.len() > MOST_PAIRS || k % SIDES_PER_LOOK == 0 && context.is_out_of_time() {
+            break;
+        }
         let (low_i, high_i) = (low(i), high(i));
         for &j in order[k + 1..].iter().take_while(|&&j| low(j).x <= high_i.x) {
             if low(j).y <= high_i.y && high(j).y >= low_i.y && cross(sides[i].uv, sides[j].uv) {

@@ -13,6 +13,7 @@ mod turns;
 
 use self::corners::{passed_over, smooth_pieces};
 use self::turns::{turning_less, turning_less_between};
+use crate::clock::Deadline;
 use crate::edge_use::{EdgePiece, EdgeSplitter, EdgeUse};
 use crate::limits::Limits;
 use crate::snap::settled;
@@ -35,6 +36,8 @@ pub struct EdgeSamples {
     pub fewest: f64,
     /// Which parts of an edge method ran.
     pub trace: Trace,
+    /// The edge needs more chords, or more time, than one edge may take; it has no samples.
+    pub given_up: bool,
 }
 
 /// Probes between two knots of the curve. The need for chords is taken as constant around each probe: fewer
@@ -60,9 +63,16 @@ const WHOLE: f64 = 1e-9;
 const EVEN_ROUNDS: usize = 8;
 const MOST_FINER: f64 = 4.0;
 
-/// How often single chords are halved, and the most chords of a piece: limits for curves that never converge.
+/// How often single chords are halved: a limit for curves that never converge.
 const HALVINGS: usize = 24;
-const MOST_CHORDS: usize = 1_000_000;
+
+/// The most chords of an edge. Edges of sound files need thousands; one with a control point at 1e10 needs more than fit
+/// into memory. The faces of an edge that needs more fail.
+const MOST_CHORDS: usize = 200_000;
+
+/// The clock is looked at once in so many chords: the bound of a chord on an offset surface takes up to a
+/// millisecond.
+const CHORDS_PER_LOOK: usize = 32;
 
 /// One edge while it is sampled: its curve, the faces that use it, and the limits.
 struct Sampling<'e, 'a, 's> {
@@ -74,6 +84,27 @@ struct Sampling<'e, 'a, 's> {
     limits: Limits,
     /// Limits by which the faces need chords.
     of_faces: Limits,
+    /// When the edge is given up.
+    deadline: Option<Deadline>,
+}
+
+impl Sampling<'_, '_, '_> {
+    /// True where so many chords, or the time that they took, are too much.
+    fn is_spent(&self, chords: usize) -> bool {
+        chords > MOST_CHORDS || self.deadline.is_some_and(Deadline::is_over)
+    }
+
+    /// The largest error of the chords between these parameters; none where the budget is spent.
+    fn worst(&self, t: &[f64]) -> Option<f64> {
+        let mut worst = 0.0f64;
+        for (k, pair) in t.windows(2).enumerate() {
+            if k % CHORDS_PER_LOOK == 0 && self.is_spent(t.len()) {
+                return None;
+            }
+            worst = worst.max(self.curve.chord_error(pair[0], pair[1]));
+        }
+        Some(worst)
+    }
 }
 
 impl EdgeSamples {
@@ -85,6 +116,7 @@ impl EdgeSamples {
         limits: &Limits,
         splitter: Option<&dyn EdgeSplitter>,
         least: usize,
+        deadline: Option<Deadline>,
     ) -> Self {
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
@@ -98,6 +130,7 @@ impl EdgeSamples {
             // Faces need chords as short as their facets do, but never shorter than the tolerance of the edge
             // needs.
             of_faces: Limits { tolerance: CHORD_AIM * limits.largest(), ..*limits },
+            deadline,
         };
         let mut samples = Self::default();
         samples.t.push(edge.range.start);
@@ -114,6 +147,9 @@ impl EdgeSamples {
             match splitter.and_then(|s| s.parameters(&piece, uses, &mut samples.trace)) {
                 Some(t) => samples.add_given(t, &sampling, range),
                 None => samples.add_smooth(&sampling, range),
+            }
+            if samples.given_up || sampling.is_spent(samples.t.len()) {
+                return Self { given_up: true, ..Self::default() };
             }
         }
         let least = if edge.start == edge.end { least.max(LEAST_OF_CLOSED) } else { least };
@@ -145,8 +181,15 @@ impl EdgeSamples {
         let allowed = sampling.limits.tolerance;
         let mut count = (probes.total() - WHOLE).ceil().max(1.0) as usize;
         for _ in 0..EVEN_ROUNDS {
+            if sampling.is_spent(count) {
+                self.given_up = true;
+                return;
+            }
             let t = probes.spread(count);
-            let worst = t.windows(2).map(|t| sampling.curve.chord_error(t[0], t[1])).fold(0.0, f64::max);
+            let Some(worst) = sampling.worst(&t) else {
+                self.given_up = true;
+                return;
+            };
             // Some curves, such as those on offsets of free surfaces, have no finite bound however short the
             // chords are.
             if worst.is_infinite() {
@@ -158,6 +201,10 @@ impl EdgeSamples {
             }
             let factor = (worst / allowed).sqrt().clamp(1.0, MOST_FINER);
             count = ((count as f64 * factor).ceil() as usize).max(count + 1);
+        }
+        if sampling.is_spent(count) {
+            self.given_up = true;
+            return;
         }
         // The curve is less even than the probes showed: halve the chords that are still too far off.
         self.add_halved(probes.spread(count), sampling, range);
@@ -171,30 +218,43 @@ impl EdgeSamples {
         let before = self.t.len();
         let t = turning_less_between(t, sampling, range);
         self.add_halved(t, sampling, range);
+        if self.given_up {
+            return;
+        }
         self.trace.add("chords halved for the edge or a face's turn", self.t.len() - before - (made - 1));
     }
 
     fn add_halved(&mut self, mut t: Vec<f64>, sampling: &Sampling<'_, '_, '_>, range: Range) {
         for round in 0..HALVINGS {
             let before = t.len();
+            let mut judged = 0;
             t = split_where(&t, |a, b| {
+                judged += 1;
+                self.given_up |= judged % CHORDS_PER_LOOK == 0 && sampling.is_spent(before);
+                if self.given_up {
+                    return false;
+                }
                 let error = sampling.curve.chord_error(a, b);
                 error > sampling.limits.tolerance && (error.is_finite() || round < UNBOUNDED_ROUNDS)
             });
-            if t.len() == before || t.len() > MOST_CHORDS {
+            if self.given_up || t.len() == before || t.len() > MOST_CHORDS {
                 break;
             }
+        }
+        if sampling.is_spent(t.len()) {
+            self.given_up = true;
+            return;
         }
         self.t.extend_from_slice(&turning_less(t, sampling, range)[1..]);
     }
 
-    /// Cuts the named chords into this many parts.
+    /// Cuts the named chords, which are in order, into this many parts.
     pub fn split(&mut self, edge: &Edge, chords: &[u32], parts: u32) {
         let Some(curve) = edge.curve.as_deref() else { return };
         let ends = [self.points[0], self.points[self.points.len() - 1]];
         let mut t = vec![self.t[0]];
         for (k, pair) in self.t.windows(2).enumerate() {
-            if chords.contains(&(k as u32)) {
+            if chords.binary_search(&(k as u32)).is_ok() {
                 let at = |i: u32| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(parts);
                 t.extend((1..parts).map(at));
             }
@@ -206,7 +266,7 @@ impl EdgeSamples {
     }
 }
 
-fn split_where(t: &[f64], too_far: impl Fn(f64, f64) -> bool) -> Vec<f64> {
+fn split_where(t: &[f64], mut too_far: impl FnMut(f64, f64) -> bool) -> Vec<f64> {
     let mut fine = vec![t[0]];
     for pair in t.windows(2) {
         if too_far(pair[0], pair[1]) {

@@ -1,7 +1,7 @@
 //! The stages of one part, top to bottom.
 
 use crate::chart::FaceContext;
-use crate::clock::Stopwatch;
+use crate::clock::{Deadline, Stopwatch};
 use crate::edges::EdgeSamples;
 use crate::effort::Effort;
 use crate::face_result::{FaceResult, Meshed};
@@ -19,7 +19,7 @@ use crate::shared_inner_edges::separate;
 use crate::stitch::stitch;
 use crate::uncross::{Crossed, Uncrossed, uncrossed};
 use crate::unroll::Chart;
-use chordal_brep::Part;
+use chordal_brep::{MeshIssue, Part};
 use chordal_mesh::PartMesh;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -71,7 +71,7 @@ pub fn tessellate_part(
 struct MeshedOnce {
     mesh: PartMesh,
     report: PartReport,
-    /// Faces whose loops cross, or that failed, perhaps for that.
+    /// Faces whose loops cross.
     crossed: Vec<usize>,
     /// The part with other loops for those.
     uncrossed: Option<Uncrossed>,
@@ -102,7 +102,7 @@ fn mesh_once(
     separate(&pass, &mut result);
     let result = leave_to_default(&job, result);
     report.seconds.faces = clock.seconds();
-    let crossed = crossed_faces(&job, &result);
+    let crossed = crossed_faces(&result);
     let uncrossed = uncrossed_part(&job, &result.edges, &crossed);
     // 4. Join the faces.
     let clock = Stopwatch::of_wall();
@@ -118,10 +118,10 @@ fn mesh_once(
     MeshedOnce { mesh, report, crossed, uncrossed }
 }
 
-fn crossed_faces(job: &PartJob<'_>, result: &PassResult) -> Vec<usize> {
+fn crossed_faces(result: &PassResult) -> Vec<usize> {
     let is_crossed = |face: &usize| match &result.faces[*face] {
         Ok(result) => result.crossed,
-        Err(_) => job.unusable(*face).is_none(),
+        Err(issue) => *issue == MeshIssue::LoopsCross,
     };
     (0..result.faces.len()).filter(is_crossed).collect()
 }
@@ -141,6 +141,7 @@ fn uncrossed_part(job: &PartJob<'_>, edges: &[EdgeSamples], crossed: &[usize]) -
                 edges,
                 doubled: &[],
                 touching: job.known.touching.contains(&face),
+                deadline: job.options.face_timeout.and_then(Deadline::after),
                 resolution: job.resolution,
             };
             Some((face, context))

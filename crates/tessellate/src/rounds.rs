@@ -11,6 +11,7 @@
 
 use crate::attempts::mesh_face;
 use crate::chart::FaceContext;
+use crate::clock::{Deadline, Stopwatch};
 use crate::edges::EdgeSamples;
 use crate::effort::{Effort, MAX_ROUNDS, Setback};
 use crate::face_result::{FaceResult, Meshed};
@@ -18,10 +19,12 @@ use crate::keys::SharedEdge;
 use crate::options::Options;
 use crate::panics::caught;
 use crate::part_job::PartJob;
+use crate::surface::FaceSurface;
 use chordal_brep::{Edge, MeshIssue};
 use chordal_nurbs::Curve;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 /// Rounds in which chords are halved; later ones are quartered. Where a surface turns within almost no
 /// distance, halves do not get there in the rounds that there are.
@@ -100,10 +103,12 @@ impl<'j, 'a> Pass<'j, 'a> {
             return Ok(EdgeSamples::default());
         }
         let splitter = self.options_of_edge(edge).edge_splitter.as_deref();
-        caught(|| {
+        let samples = caught(|| {
             let uses = job.edge_uses(edge);
-            EdgeSamples::new(job.part, &job.part.edges[edge], &uses, &job.limits, splitter, least)
-        })
+            let deadline = job.options.face_timeout.and_then(Deadline::after);
+            EdgeSamples::new(job.part, &job.part.edges[edge], &uses, &job.limits, splitter, least, deadline)
+        })?;
+        if samples.given_up { Err(MeshIssue::EdgeGivenUp) } else { Ok(samples) }
     }
 
     /// Single chords between the same two vertices as another single chord, where the curve is not straight:
@@ -148,6 +153,28 @@ impl<'j, 'a> Pass<'j, 'a> {
         if job.cancel.is_cancelled() {
             return Ok(Err(MeshIssue::Cancelled));
         }
+        let spent = Duration::from_micros(job.spent[face].load(Ordering::Relaxed));
+        let left = job.options.face_timeout.map(|timeout| timeout.saturating_sub(spent));
+        if left == Some(Duration::ZERO) {
+            return Ok(Err(MeshIssue::OutOfTime { elements: 0 }));
+        }
+        let watch = Stopwatch::of_thread();
+        let result = self.mesh_within(face, surface, edges, round, doubled, left.and_then(Deadline::after));
+        job.spent[face].fetch_add((1e6 * watch.seconds()) as u64, Ordering::Relaxed);
+        result
+    }
+
+    /// Meshes one face before the deadline.
+    fn mesh_within(
+        &self,
+        face: usize,
+        surface: &FaceSurface<'_>,
+        edges: &[EdgeSamples],
+        round: usize,
+        doubled: &[SharedEdge],
+        deadline: Option<Deadline>,
+    ) -> Result<Meshed, Vec<(u32, u32)>> {
+        let job = self.job;
         let context = FaceContext {
             part: job.part,
             face: &job.part.faces[face],
@@ -155,6 +182,7 @@ impl<'j, 'a> Pass<'j, 'a> {
             edges,
             doubled,
             touching: job.known.touching.contains(&face),
+            deadline,
             resolution: job.resolution,
         };
         let options = self.options_of_face(face);

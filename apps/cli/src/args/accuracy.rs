@@ -4,6 +4,7 @@ use super::values::*;
 use chordal::methods::{EdgeMethodEntry, StrategyEntry};
 use chordal::{Bound, InputFormat, MeshOptions, ReadOptions, Sewing, Tolerance, Winding};
 use clap::Args;
+use std::time::Duration;
 
 /// What is requested of a mesh, and the threads.
 #[derive(Debug, Args)]
@@ -52,10 +53,17 @@ pub struct AccuracyArgs {
     /// Number of threads [default: one per core]. The mesh is the same for any number.
     #[arg(long, value_name = "N", value_parser = parse_jobs)]
     pub jobs: Option<usize>,
-    /// Time limit per face in seconds, 0 for none.
-    #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
-    pub face_timeout: TimeoutArg,
+    /// Limit of processor time per face and per edge in seconds, 0 for none [default: 3; 60 with a named strategy or
+    /// edge method].
+    #[arg(long, value_name = "S", value_parser = parse_seconds)]
+    pub face_timeout: Option<TimeoutArg>,
 }
+
+/// A face of a sound file takes milliseconds by the default strategy; a few hostile ones must not take minutes.
+const DEFAULT_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// The methods of the literature take seconds where the default takes a tenth of one.
+const METHOD_TIMEOUT: Duration = Duration::from_secs(60);
 
 impl AccuracyArgs {
     /// As options of the library.
@@ -73,7 +81,13 @@ impl AccuracyArgs {
             .with_edge_splitter(self.edge_method.edge_splitter())
             .with_sewing(self.sew.unwrap_or_default())
             .with_bound(bound)
-            .with_face_timeout(self.face_timeout.0)
+            .with_face_timeout(self.face_timeout())
+    }
+
+    fn face_timeout(&self) -> Option<Duration> {
+        let is_default = self.strategy.fill_method().is_none() && self.edge_method.edge_splitter().is_none();
+        let default = if is_default { DEFAULT_TIMEOUT } else { METHOD_TIMEOUT };
+        self.face_timeout.map_or(Some(default), |given| given.0)
     }
 
     /// As options of the readers.

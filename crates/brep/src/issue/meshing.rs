@@ -34,6 +34,8 @@ pub enum MeshIssue {
         /// The edge in the file.
         edge: Source,
     },
+    /// An edge needs more chords, or more time, than an edge may take.
+    EdgeGivenUp,
     /// Two consecutive edges of a loop do not share a vertex.
     LoopNotClosed {
         /// Position of the first of the two in its loop, from 1.
@@ -105,6 +107,7 @@ impl MeshIssue {
             MeshIssue::TooManyTriangles { .. } => "too-many-triangles",
             MeshIssue::TooManyCells { .. } => "too-many-cells",
             MeshIssue::EdgeWithoutSamples { .. } => "edge-without-samples",
+            MeshIssue::EdgeGivenUp => "edge-given-up",
             MeshIssue::LoopNotClosed { .. } => "loop-not-closed",
             MeshIssue::LoopsCross => "loops-cross",
             MeshIssue::NoArea => "no-area",
@@ -144,6 +147,9 @@ impl fmt::Display for MeshIssue {
                 write!(f, "the face needs more than {}", count(*most, "cell", "cells"))
             }
             MeshIssue::EdgeWithoutSamples { edge } => write!(f, "edge {edge} cannot be sampled"),
+            MeshIssue::EdgeGivenUp => {
+                f.write_str("the edge needs more chords, or more time, than one edge may take")
+            }
             MeshIssue::LoopNotClosed { edge, next } => {
                 write!(f, "loop is not closed: edges {edge} and {next} of it share no vertex")
             }

@@ -82,6 +82,12 @@ pub(super) struct Cuts<'a> {
     walls: Vec<Wall>,
 }
 
+/// The search for a cut ends after so many comparisons of hops with sides: about a tenth of a second.
+const MOST_COMPARISONS: usize = 20_000_000;
+
+/// Hops that are tested however many sides there are.
+const LEAST_TESTS: usize = 256;
+
 /// The points of a loop in lengths, the first one repeated at the end.
 struct Wall {
     points: Vec<DVec2>,
@@ -193,13 +199,21 @@ impl<'a> Cuts<'a> {
         [NEAREST, NEAREST_AT_LAST].into_iter().find_map(|nearest| self.search(nearest))
     }
 
+    /// Hops that are tested at most: each is compared with every side of every loop.
+    fn most_tests(&self) -> usize {
+        let sides: usize = self.walls.iter().map(|wall| wall.points.len()).sum();
+        (MOST_COMPARISONS / sides.max(1)).max(LEAST_TESTS)
+    }
+
     fn search(&self, nearest: usize) -> Option<Vec<Hop>> {
         let goal = self.holes.len() + 1;
         let mut reached: Vec<Option<Reached>> = vec![None; goal + 1];
         reached[0] = Some(Reached { cost: 0.0, hop: None, shift: DVec2::ZERO });
         let mut heap = BinaryHeap::new();
         self.offer(0, &reached, nearest, &mut heap);
+        let mut left = self.most_tests();
         while let Some(next) = heap.pop() {
+            left = left.checked_sub(1)?;
             let node = next.to.0;
             if reached[node].is_some() || !self.is_free(next.p, next.q) {
                 continue;
