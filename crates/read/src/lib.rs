@@ -49,6 +49,7 @@ mod locate;
 mod number;
 #[cfg(feature = "obj")]
 mod obj;
+mod polygons;
 mod readers;
 #[cfg(feature = "rhino")]
 mod rhino;

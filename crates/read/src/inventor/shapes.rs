@@ -2,8 +2,8 @@
 
 use super::state::State;
 use super::walk::Walk;
+use crate::polygons;
 use crate::scene::graph::{Node, NodeIx};
-use crate::scene::polygons;
 use crate::scene::primitives::{self, Faces};
 use chordal_brep::ReadIssue;
 use chordal_nurbs::DVec3;

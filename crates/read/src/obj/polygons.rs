@@ -1,6 +1,6 @@
 //! Polygons, by the object, group and material that they belong to.
 
-use crate::scene::polygons::triangulate;
+use crate::polygons::triangulate;
 use chordal_brep::{Source, TessellatedItem};
 use chordal_nurbs::DVec3;
 use rustc_hash::FxHashMap;

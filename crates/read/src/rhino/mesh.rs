@@ -1,7 +1,7 @@
 //! Meshes: they pass through as they are.
 
 use super::bytes::{ANONYMOUS, Bytes, Res};
-use crate::scene::polygons::triangulate;
+use crate::polygons::triangulate;
 use crate::trimmed::Look;
 use chordal_brep::{ReadIssue, Real, TessellatedItem};
 use chordal_nurbs::DVec3;

@@ -9,7 +9,6 @@ mod knots;
 mod lexer;
 pub(crate) mod matrix;
 pub(crate) mod nurbs;
-pub(crate) mod polygons;
 pub(crate) mod primitives;
 pub(crate) mod prototypes;
 pub(crate) mod stage;

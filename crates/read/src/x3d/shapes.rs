@@ -1,8 +1,8 @@
 //! Polygons and solids.
 
 use super::walk::{Place, Walk};
+use crate::polygons;
 use crate::scene::graph::{Node, NodeIx};
-use crate::scene::polygons;
 use crate::scene::primitives::{self, Faces};
 use chordal_brep::ReadIssue;
 use chordal_nurbs::DVec3;
