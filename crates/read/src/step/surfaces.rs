@@ -37,21 +37,20 @@ impl Geometry<'_> {
         let mut args = doc.open(ix)?;
         args.skip(1);
         match kw {
-            // Sizes keep their signs, see [`crate::settle_surfaces`]; a surface with a radius of zero has no area.
             Kw::Plane => Ok(Surface::Plane { frame: self.frame(args.reference()?)? }),
             Kw::CylindricalSurface => {
                 let frame = self.frame(args.reference()?)?;
-                Ok(Surface::Cylinder { frame, radius: args.real()? })
+                Ok(Surface::Cylinder { frame, radius: self.radius(ix, "radius", args.real()?) })
             }
             Kw::ConicalSurface => self.cone(ix, args),
             Kw::SphericalSurface => {
                 let frame = self.frame(args.reference()?)?;
-                Ok(Surface::Sphere { frame, radius: args.real()? })
+                Ok(Surface::Sphere { frame, radius: self.radius(ix, "radius", args.real()?) })
             }
             Kw::ToroidalSurface | Kw::DegenerateToroidalSurface => {
                 let frame = self.frame(args.reference()?)?;
                 let major = args.real()?;
-                Ok(Surface::Torus { frame, major, minor: args.real()? })
+                Ok(Surface::Torus { frame, major, minor: self.radius(ix, "minor radius", args.real()?) })
             }
             Kw::SurfaceOfLinearExtrusion => {
                 let profile = self.curve(args.reference()?)?;
@@ -75,6 +74,15 @@ impl Geometry<'_> {
         }
     }
 
+    /// A radius of a surface. It keeps its sign, see [`crate::settle_surfaces`]; where it is zero the surface
+    /// has no area.
+    fn radius(&self, ix: Ix, what: &'static str, value: f64) -> f64 {
+        if value == 0.0 {
+            self.doc.warn(ix, ReadIssue::BadValue { what, value: Real(0.0) });
+        }
+        value
+    }
+
     /// CONICAL_SURFACE(name, position, radius, semi_angle). A negative angle opens the other way.
     fn cone(&mut self, ix: Ix, mut args: Args<'_>) -> Res<Surface> {
         let frame = self.frame(args.reference()?)?;
@@ -82,7 +90,7 @@ impl Geometry<'_> {
         let half_angle = args.real()? * self.units.angle_rad;
         if half_angle == 0.0 {
             self.doc.warn(ix, ReadIssue::ConeIsCylinder);
-            return Ok(Surface::Cylinder { frame, radius });
+            return Ok(Surface::Cylinder { frame, radius: self.radius(ix, "radius", radius) });
         }
         Ok(Surface::Cone { frame, radius, half_angle })
     }
