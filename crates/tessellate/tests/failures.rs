@@ -140,7 +140,9 @@ fn failures_have_kinds() {
     let (_, report) = tessellate_part(&two_squares(), &Options::new(0.01), &cancel, &|_| ());
     assert!(report.faces.iter().all(|f| f.failed == Some(MeshIssue::Cancelled)));
 
-    // A plane is exact, so its time limit never matters: there is nothing to refine.
+    // Without any time, each face fails for that reason.
     let hurried = Options::new(0.01).with_face_timeout(Some(Duration::ZERO));
-    assert!(mesh(&two_squares(), &hurried).faces.iter().all(|f| f.failed.is_none()));
+    let report = mesh(&two_squares(), &hurried);
+    let failed: Vec<_> = report.faces.iter().map(|face| face.failed.clone()).collect();
+    assert!(failed.iter().all(|f| matches!(f, Some(MeshIssue::OutOfTime { .. }))), "{failed:?}");
 }
