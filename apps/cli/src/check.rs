@@ -2,6 +2,7 @@
 
 use crate::args::CheckArgs;
 use crate::exit::{Exit, print, say};
+use chordal::brep::issue::words::length_mm;
 use chordal::mesh_file::{AgainstReport, CheckReport, check_mesh};
 use chordal::{MeshOptions, Tolerance};
 use std::fmt::Write;
@@ -28,8 +29,9 @@ pub fn run(args: &CheckArgs) -> Exit {
 /// Writing to a string cannot fail, so results of `write!` are dropped.
 fn text(found: &CheckReport) -> String {
     let yes = |is: bool| if is { "yes" } else { "no" };
-    let volume =
-        found.volume.map_or_else(|| "none: not closed and oriented".into(), |v| format!("{v:.6} mm³"));
+    let volume = found
+        .volume
+        .map_or_else(|| "n/a (the mesh is not closed and oriented)".into(), |v| format!("{v:.6} mm³"));
     let mut out = format!(
         "triangles   {}\nvertices    {}\nclosed      {} ({} open edges)\noriented    {} ({} inconsistent edges)\n\
          degenerate  {}\nduplicate   {}\nvolume      {volume}\n",
@@ -49,17 +51,17 @@ fn text(found: &CheckReport) -> String {
 }
 
 fn distances(out: &mut String, against: &AgainstReport) {
-    let within =
-        against.reference_error.map_or_else(String::new, |e| format!(", right to within {e:.3e} mm"));
+    let within = against.reference_error.map_or_else(String::new, |e| format!(" (± {})", length_mm(e)));
     let _ = writeln!(out, "\nagainst     {}, {}", against.model, against.method);
-    let at_most = |most: Option<f64>| most.map_or_else(String::new, |m| format!(", at most {m:.6e} mm"));
+    let at_most =
+        |most: Option<f64>| most.map_or_else(String::new, |m| format!(", at most {}", length_mm(m)));
     let _ = writeln!(
         out,
-        "mesh → model  {:.6e} mm at {} samples{within}{}\nmodel → mesh  {:.6e} mm at {} samples{}",
-        against.mesh_to_model,
+        "mesh → model  {}{within} at {} samples{}\nmodel → mesh  {} at {} samples{}",
+        length_mm(against.mesh_to_model),
         against.mesh_samples,
         at_most(against.mesh_to_model_at_most),
-        against.model_to_mesh,
+        length_mm(against.model_to_mesh),
         against.model_samples,
         at_most(against.model_to_mesh_at_most)
     );
@@ -67,6 +69,6 @@ fn distances(out: &mut String, against: &AgainstReport) {
         let _ = writeln!(out, "{} faces of the model were not compared", against.faces_not_compared);
     }
     for face in &against.worst_faces {
-        let _ = writeln!(out, "  {:.3e} mm  {} {} of {}", face.distance, face.kind, face.id, face.part);
+        let _ = writeln!(out, "  {}  {} {} of {}", length_mm(face.distance), face.kind, face.id, face.part);
     }
 }

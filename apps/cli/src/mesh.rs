@@ -107,6 +107,9 @@ impl Job<'_> {
         report.peak_memory = peak_memory();
         drop(bar);
         tell(self.args.talk(), &report);
+        if let (Target::File(path), None, false) = (target, &self.args.output, self.args.quiet) {
+            say(&format!("{}: written to {}", input.name(), path.display()));
+        }
         Ok(report)
     }
 

@@ -70,9 +70,10 @@ fn options_line(report: &Report) -> String {
 
 /// `28 faces, 412 triangles, all 28 faces proven within 0.05 mm, gap 0 mm, watertight, 0.02 s`.
 fn result_line(report: &Report) -> String {
+    let (meshed, all) = (report.faces.meshed, count(report.faces.total, "face", "faces"));
+    let faces = if meshed == report.faces.total { all } else { format!("{meshed} of {all} meshed") };
     format!(
-        "{}, {}, {}, gap {}, {}, {:.2} s",
-        count(report.faces.total, "face", "faces"),
+        "{faces}, {}, {}, gap {}, {}, {:.2} s",
         count(report.triangles, "triangle", "triangles"),
         report.proof_sentence(),
         length_mm(report.max_edge_gap),

@@ -61,7 +61,7 @@ impl NewFile {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        let temporary = builder().tempfile_in(folder).map_err(error)?;
+        let temporary = builder().tempfile_in(folder).map_err(|e| error(without_temporary_name(e)))?;
         Ok(Self { target, writer: BufWriter::with_capacity(BUFFER, temporary) })
     }
 
@@ -75,6 +75,15 @@ impl NewFile {
         let error = |source| WriteError::File { path: target.clone(), source };
         let temporary = writer.into_inner().map_err(|e| error(e.into_error()))?;
         temporary.persist(&target).map(|_: File| ()).map_err(|e| error(e.error))
+    }
+}
+
+/// The same error without the name of the temporary file, which means nothing to a reader.
+fn without_temporary_name(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|e| e.source()).and_then(|e| e.downcast_ref::<io::Error>());
+    match inner.and_then(io::Error::raw_os_error) {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error,
     }
 }
 

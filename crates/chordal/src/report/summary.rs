@@ -42,9 +42,8 @@ impl Report {
         }
         let leaking: Vec<&Problem> = others.iter().copied().filter(|p| p.code == "leaking-shell").collect();
         if let Some(first) = leaking.first() {
-            let total = count(self.shells.closed_in_file, "closed shell leaks", "closed shells leak");
-            let number = format!("{} of {total}", self.shells.leaking);
-            sentences.push(format!("{number}: {}{}", first.sentence(), and_more(leaking.len())));
+            let total = count(self.shells.closed_in_file, "closed shell", "closed shells");
+            sentences.push(format!("{} ({} of {total})", first.sentence(), self.shells.leaking));
         }
         let of_audit: Vec<&Problem> = self.errors().filter(|p| p.stage == "audit").collect();
         if let Some(first) = of_audit.first() {

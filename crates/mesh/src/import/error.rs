@@ -55,7 +55,7 @@ impl fmt::Display for ImportFormat {
 #[non_exhaustive]
 pub enum ImportError {
     /// The operating system could not read the file.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read the file: {source}")]
     File {
         /// The file.
         path: PathBuf,
