@@ -13,6 +13,7 @@ mod edges;
 mod meet;
 mod natural;
 mod nest;
+mod polygon;
 #[cfg(test)]
 mod tests;
 mod untangle;

@@ -1,8 +1,8 @@
 //! Polygons and solids.
 
 use super::state::State;
-use super::walk::Walk;
 use crate::polygons;
+use crate::scene::context::Context;
 use crate::scene::graph::{Node, NodeIx};
 use crate::scene::primitives::{self, Faces};
 use chordal_brep::ReadIssue;
@@ -30,20 +30,20 @@ fn is_polygons(kind: &str) -> bool {
 }
 
 /// Reads a node if it is a solid or polygons; true then.
-pub(super) fn read(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) -> bool {
+pub(super) fn read(context: &mut Context<'_>, node: &Node, state: &State, name: &str) -> bool {
     if is_solid(&node.kind) {
-        solid(walk, node, state, name);
+        solid(context, node, state, name);
         return true;
     }
     if is_polygons(&node.kind) {
-        polygons_of(walk, node, state, name);
+        polygons_of(context, node, state, name);
         return true;
     }
     false
 }
 
-fn solid(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
-    let look = walk.look(node, state, name);
+fn solid(context: &mut Context<'_>, node: &Node, state: &State, name: &str) {
+    let look = state.look(node, name);
     let named = |field, default: f64| node.number(field, default);
     let parts = node.words("parts");
     let has = |part: &str| parts.is_empty() || parts.iter().any(|&p| p == part || p == "ALL");
@@ -55,13 +55,13 @@ fn solid(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
         _ => [named("bottomRadius", 1.0), named("height", 2.0), 1.0],
     };
     if !sizes.iter().all(|&s| s > 0.0) {
-        return walk.stage.notes.lose(
+        return context.stage.notes.lose(
             node.source(),
             ReadIssue::InNode { node: node.kind.clone(), cause: ReadIssue::Empty.boxed() },
         );
     }
     let [a, b, _] = sizes;
-    walk.stage.solid(&state.transform, &look, |part, look| match node.kind.as_str() {
+    context.stage.solid(&state.transform, &look, |part, look| match node.kind.as_str() {
         "Cube" => primitives::cuboid(part, sizes.into(), look),
         "Sphere" => primitives::sphere(part, a, look),
         "Cylinder" => primitives::cylinder(part, a, b, faces, look),
@@ -70,11 +70,11 @@ fn solid(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
 }
 
 /// The corners that a shape's own property node or the state gives.
-fn corners(walk: &Walk<'_>, node: &Node, state: &State) -> Vec<DVec3> {
+fn corners(context: &Context<'_>, node: &Node, state: &State) -> Vec<DVec3> {
     let own = node.nodes("vertexProperty").first().copied();
-    let own = own.filter(|&ix: &NodeIx| !walk.graph.node(ix).numbers("vertex").is_empty());
+    let own = own.filter(|&ix: &NodeIx| !context.graph.node(ix).numbers("vertex").is_empty());
     let Some(ix) = own.or(state.shared.coordinates) else { return Vec::new() };
-    let source = walk.graph.node(ix);
+    let source = context.graph.node(ix);
     match source.kind.as_str() {
         "Coordinate4" => {
             source.numbers("point").chunks_exact(4).map(|p| DVec3::from_slice(p) / p[3]).collect()
@@ -84,10 +84,10 @@ fn corners(walk: &Walk<'_>, node: &Node, state: &State) -> Vec<DVec3> {
     }
 }
 
-fn polygons_of(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
-    let points = corners(walk, node, state);
+fn polygons_of(context: &mut Context<'_>, node: &Node, state: &State, name: &str) {
+    let points = corners(context, node, state);
     let size = points.len() + node.fields.iter().map(|(_, v)| v.size()).sum::<usize>();
-    if !walk.stage.afford(size, node.source()) {
+    if !context.stage.afford(size, node.source()) {
         return;
     }
     let (triangles, lost) = match node.kind.as_str() {
@@ -101,11 +101,11 @@ fn polygons_of(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
     if lost > 0 {
         let cause = ReadIssue::PolygonsLost { polygons: lost }.boxed();
         let message = ReadIssue::InNode { node: node.kind.clone(), cause };
-        walk.stage.notes.lose(node.source(), message);
+        context.stage.notes.lose(node.source(), message);
     }
-    let mut look = walk.look(node, state, name);
+    let mut look = state.look(node, name);
     look.flipped = state.shared.clockwise;
-    walk.stage.triangles(points, triangles, &state.transform, &look);
+    context.stage.triangles(points, triangles, &state.transform, &look);
 }
 
 /// Runs of consecutive corners as an index with −1 behind each; none given: all of them.

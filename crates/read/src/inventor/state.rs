@@ -1,6 +1,7 @@
 //! What nodes change for the nodes after them.
 
-use crate::scene::graph::NodeIx;
+use crate::scene::graph::{Node, NodeIx};
+use crate::trimmed::Look;
 use chordal_brep::Color;
 use chordal_nurbs::DAffine3;
 
@@ -37,5 +38,10 @@ impl State {
             metres: 1.0,
         };
         Self { transform: DAffine3::IDENTITY, shared }
+    }
+
+    /// What the faces of a shape have besides their shape.
+    pub(super) fn look(&self, node: &Node, name: &str) -> Look {
+        Look { name: name.to_owned(), color: self.shared.color, source: node.source(), ..Look::default() }
     }
 }

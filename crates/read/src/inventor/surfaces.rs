@@ -1,7 +1,7 @@
 //! NurbsSurface and IndexedNurbsSurface, trimmed by the profiles before them.
 
 use super::state::State;
-use super::walk::Walk;
+use crate::scene::context::Context;
 use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::nurbs::{self, Net};
 use crate::trimmed::{Piece, Role, TrimLoop};
@@ -9,30 +9,31 @@ use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4};
 
 /// Reads a node if it is a surface; true then.
-pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, state: &State, name: &str) -> bool {
-    let graph = walk.graph;
+pub(super) fn read(context: &mut Context<'_>, ix: NodeIx, state: &State, name: &str) -> bool {
+    let graph = context.graph;
     let node = graph.node(ix);
     if !matches!(node.kind.as_str(), "NurbsSurface" | "IndexedNurbsSurface") {
         return false;
     }
-    let look = walk.look(node, state, name);
+    let look = state.look(node, name);
     let counts = [node.count("numUControlPoints", 0), node.count("numVControlPoints", 0)];
     let needed = counts[0].saturating_mul(counts[1]);
-    if !walk.stage.afford(needed.min(node_size(graph, state)), node.source()) {
+    if !context.stage.afford(needed.min(node_size(graph, state)), node.source()) {
         return true;
     }
     let mut notes = Vec::new();
     let made = net(graph, node, state, counts, &mut notes);
     let trims = trims(graph, state, &mut notes);
     for note in notes {
-        walk.stage
+        context
+            .stage
             .notes
             .warn(node.source(), ReadIssue::InNode { node: node.kind.clone(), cause: note.boxed() });
     }
     match (made, trims) {
-        (Ok(surface), Ok(trims)) => walk.stage.surface(&surface, &trims, &state.transform, &look),
+        (Ok(surface), Ok(trims)) => context.stage.surface(&surface, &trims, &state.transform, &look),
         (Err(reason), _) | (_, Err(reason)) => {
-            walk.stage.failed(ReadIssue::InNode { node: node.kind.clone(), cause: reason.boxed() }, &look);
+            context.stage.failed(ReadIssue::InNode { node: node.kind.clone(), cause: reason.boxed() }, &look);
         }
     }
     true

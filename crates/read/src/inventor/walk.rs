@@ -2,14 +2,14 @@
 
 use super::state::{Shared, State};
 use super::{shapes, surfaces};
+use crate::scene::context::Context;
 use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::matrix;
 use crate::scene::stage::{self, Placed, Stage};
-use crate::trimmed::Look;
 use chordal_brep::{LooseKind, ReadIssue};
 use chordal_nurbs::{DAffine3, DVec3};
 use glam::DQuat;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 /// Uses within uses deeper than this refer in a circle.
 const MAX_DEPTH: u32 = 600;
@@ -17,11 +17,9 @@ const MAX_DEPTH: u32 = 600;
 /// Fills the stage with the shapes of a graph.
 pub(super) fn walk(graph: &Graph, stage: &mut Stage) {
     let mut walk = Walk {
-        graph,
-        stage,
+        context: Context::new(graph, stage),
         uses: stage::uses(graph),
         parts: FxHashMap::default(),
-        noted: FxHashSet::default(),
         active: vec![false; graph.nodes.len()],
         depth: 0,
     };
@@ -31,14 +29,11 @@ pub(super) fn walk(graph: &Graph, stage: &mut Stage) {
     }
 }
 
-pub(super) struct Walk<'a> {
-    pub graph: &'a Graph,
-    pub stage: &'a mut Stage,
+struct Walk<'a> {
+    context: Context<'a>,
     uses: Vec<u32>,
     /// What nodes used more than once consist of, by the state they were used in.
     parts: FxHashMap<NodeIx, Vec<(Shared, Vec<Placed>)>>,
-    /// Kinds of nodes about which something has been said.
-    noted: FxHashSet<String>,
     /// Nodes being visited: one that is used inside itself would never end.
     active: Vec<bool>,
     depth: u32,
@@ -47,13 +42,17 @@ pub(super) struct Walk<'a> {
 impl Walk<'_> {
     /// Visits a node; `name` is that of the nearest named node above.
     fn node(&mut self, ix: NodeIx, state: &mut State, name: &str) {
-        let graph = self.graph;
+        let graph = self.context.graph;
         let node = graph.node(ix);
-        if self.depth >= MAX_DEPTH || !self.stage.afford(0, node.source()) {
+        if self.depth >= MAX_DEPTH || !self.context.stage.afford(0, node.source()) {
             return;
         }
         if std::mem::replace(&mut self.active[ix as usize], true) {
-            return self.stage.notes.lose(node.source(), ReadIssue::UsedInItself { node: node.kind.clone() });
+            return self
+                .context
+                .stage
+                .notes
+                .lose(node.source(), ReadIssue::UsedInItself { node: node.kind.clone() });
         }
         self.depth += 1;
         let name = if node.name.is_empty() { name } else { readable(&node.name) };
@@ -68,27 +67,29 @@ impl Walk<'_> {
 
     /// A node that is used more than once and changes nothing for its neighbours becomes a part.
     fn used_often(&mut self, ix: NodeIx, state: &State, name: &str) {
-        let source = self.graph.node(ix).source();
+        let source = self.context.graph.node(ix).source();
         let known =
             self.parts.get(&ix).and_then(|all| all.iter().find(|(shared, _)| *shared == state.shared));
         let placed = match known {
             Some((_, placed)) => placed.clone(),
             None => {
-                self.stage.open_part(name, source);
+                self.context.stage.open_part(name, source);
                 let mut inner = State { transform: DAffine3::IDENTITY, shared: state.shared.clone() };
                 self.visit(ix, &mut inner, name);
-                let placed = self.stage.close_part();
+                let placed = self.context.stage.close_part();
                 self.parts.entry(ix).or_default().push((state.shared.clone(), placed.clone()));
                 placed
             }
         };
-        self.stage.place(&placed, &state.transform, source);
+        self.context.stage.place(&placed, &state.transform, source);
     }
 
     fn visit(&mut self, ix: NodeIx, state: &mut State, name: &str) {
-        let graph = self.graph;
+        let graph = self.context.graph;
         let node = graph.node(ix);
-        if shapes::read(self, node, state, name) || surfaces::read(self, ix, state, name) {
+        if shapes::read(&mut self.context, node, state, name)
+            || surfaces::read(&mut self.context, ix, state, name)
+        {
             return;
         }
         if let Some(by) = transform(node) {
@@ -117,7 +118,7 @@ impl Walk<'_> {
             "Switch" => self.switch(node, state, name),
             "LOD" | "LevelOfDetail" => {
                 if node.children.len() > 1 {
-                    self.note(node, ReadIssue::FirstLevelOnly);
+                    self.context.note(node, ReadIssue::FirstLevelOnly);
                 }
                 let mut inner = state.clone();
                 node.children.first().inspect(|&&child| self.node(child, &mut inner, name));
@@ -131,18 +132,18 @@ impl Walk<'_> {
             "WWWInline" | "File" => {
                 let what =
                     format!("{} is not followed", [node.word("name"), node.kind.as_str()].join(" ").trim());
-                self.stage.notes.lose(node.source(), what);
+                self.context.stage.notes.lose(node.source(), what);
             }
             kind if is_separator(kind) => {
                 let mut inner = state.clone();
                 self.children(node, &mut inner, name);
             }
-            kind if is_loose_curve(kind) => self.stage.loose(LooseKind::Wire, name, node.source()),
+            kind if is_loose_curve(kind) => self.context.stage.loose(LooseKind::Wire, name, node.source()),
             "PointSet" | "IndexedPointSet" | "MarkerSet" | "IndexedMarkerSet" => {
-                self.stage.loose(LooseKind::Point, name, node.source());
+                self.context.stage.loose(LooseKind::Point, name, node.source());
             }
             "Text2" | "Text3" | "AsciiText" => {
-                self.note(node, ReadIssue::Unsupported { what: "text".into() })
+                self.context.note(node, ReadIssue::Unsupported { what: "text".into() })
             }
             _ => self.children(node, state, name),
         }
@@ -164,7 +165,7 @@ impl Walk<'_> {
             }
             -3.0 => self.children(node, state, name),
             _ if node.children.is_empty() => {}
-            _ => self.note(node, ReadIssue::NoChoice),
+            _ => self.context.note(node, ReadIssue::NoChoice),
         }
     }
 
@@ -176,7 +177,7 @@ impl Walk<'_> {
             match grid(node) {
                 Some(places) => places,
                 None => {
-                    return self.stage.notes.lose(
+                    return self.context.stage.notes.lose(
                         node.source(),
                         ReadIssue::TooMany { what: "copies in an array", limit: 100_000 },
                     );
@@ -187,20 +188,6 @@ impl Walk<'_> {
             let mut inner = State { transform: state.transform * place, shared: state.shared.clone() };
             self.children(node, &mut inner, name);
         }
-    }
-
-    /// Says something once for each kind of node.
-    pub(super) fn note(&mut self, node: &Node, what: ReadIssue) {
-        if self.noted.insert(node.kind.clone()) {
-            self.stage
-                .notes
-                .warn(node.source(), ReadIssue::InNode { node: node.kind.clone(), cause: what.boxed() });
-        }
-    }
-
-    /// What the faces of a shape have besides their shape.
-    pub(super) fn look(&self, node: &Node, state: &State, name: &str) -> Look {
-        Look { name: name.to_owned(), color: state.shared.color, source: node.source(), ..Look::default() }
     }
 }
 

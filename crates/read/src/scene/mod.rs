@@ -4,6 +4,7 @@
 //! A reader makes a [`Graph`] from text ([`text`]), XML or binary data; a walk through it hands shapes to a [`Stage`]
 //! ([`stage`]), which makes parts, bodies and the tree.
 
+pub(crate) mod context;
 pub(crate) mod graph;
 mod knots;
 mod lexer;

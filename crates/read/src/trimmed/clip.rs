@@ -7,7 +7,7 @@
 //! Not guaranteed: loops that cross each other are not told from loops that do not.
 
 use super::chain::Chain;
-use super::nest::{area, contains};
+use super::polygon::{area, contains};
 use super::{Piece, Role, Scale};
 use chordal_brep::ReadIssue;
 use chordal_nurbs::{BezierCurve, Curve2, DVec2, Range};

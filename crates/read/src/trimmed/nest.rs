@@ -3,6 +3,7 @@
 use super::chain::Chain;
 use super::clip::{self, Outline};
 use super::natural;
+use super::polygon::{area, contains};
 use super::untangle::{Untangled, untangled};
 use super::{Role, Scale};
 use crate::Winding;
@@ -172,30 +173,12 @@ fn roles(nested: &[Nested]) -> Vec<bool> {
         .collect()
 }
 
-pub(super) fn area(polygon: &[DVec2]) -> f64 {
-    let n = polygon.len();
-    let origin = polygon[0];
-    (0..n).map(|i| (polygon[i] - origin).perp_dot(polygon[(i + 1) % n] - origin)).sum::<f64>() * 0.5
-}
-
 /// True where most of the points lie inside the polygon.
 fn inside(points: &[DVec2], polygon: &[DVec2]) -> bool {
     // A few points tell: loops do not cross.
     let step = points.len().div_ceil(32);
     let seen: Vec<bool> = points.iter().step_by(step).map(|&p| contains(polygon, p)).collect();
     2 * seen.iter().filter(|&&inside| inside).count() > seen.len()
-}
-
-pub(super) fn contains(polygon: &[DVec2], p: DVec2) -> bool {
-    let mut inside = false;
-    let n = polygon.len();
-    for i in 0..n {
-        let (a, b) = (polygon[i], polygon[(i + 1) % n]);
-        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-            inside = !inside;
-        }
-    }
-    inside
 }
 
 /// True where a loop runs along the border of the domain, or outside of it all the way.

@@ -281,7 +281,7 @@ fn chain(
         .collect();
     let like = &chains[cut[first[one[0].0]].chain];
     let mut new = Chain { pieces, role: Role::Outer, source: like.source, winds: false, touches: true };
-    if super::nest::area(&new.polygon(scale)) < 0.0 {
+    if super::polygon::area(&new.polygon(scale)) < 0.0 {
         new.role = Role::Hole;
     }
     new

@@ -3,6 +3,8 @@
 //! Bytes → [`crate::scene::text`] or [`xml`] (nodes) → [`crate::scene::prototypes`] → [`walk`] (groups, shapes,
 //! appearances), which hands geometry to [`surfaces`] (splines) and [`shapes`] (polygons and solids).
 
+mod curves;
+mod place;
 mod shapes;
 mod surfaces;
 mod swept;

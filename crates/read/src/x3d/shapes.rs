@@ -1,7 +1,8 @@
 //! Polygons and solids.
 
-use super::walk::{Place, Walk};
+use super::place::Place;
 use crate::polygons;
+use crate::scene::context::Context;
 use crate::scene::graph::{Node, NodeIx};
 use crate::scene::primitives::{self, Faces};
 use chordal_brep::ReadIssue;
@@ -31,21 +32,21 @@ fn is_polygons(kind: &str) -> bool {
 }
 
 /// Reads a node if it is a solid or polygons; true then.
-pub(super) fn read(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) -> bool {
-    let node = walk.graph.node(ix);
+pub(super) fn read(context: &mut Context<'_>, ix: NodeIx, place: &Place<'_>) -> bool {
+    let node = context.graph.node(ix);
     match node.kind.as_str() {
-        kind if is_solid(kind) => solid(walk, node, place),
-        kind if is_polygons(kind) => polygons_of(walk, ix, place),
-        "ElevationGrid" => elevation_grid(walk, node, place),
+        kind if is_solid(kind) => solid(context, node, place),
+        kind if is_polygons(kind) => polygons_of(context, ix, place),
+        "ElevationGrid" => elevation_grid(context, node, place),
         "Extrusion" => {
-            walk.stage.notes.lose(node.source(), ReadIssue::Unsupported { what: "Extrusion".into() })
+            context.stage.notes.lose(node.source(), ReadIssue::Unsupported { what: "Extrusion".into() })
         }
         _ => return false,
     }
     true
 }
 
-fn solid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
+fn solid(context: &mut Context<'_>, node: &Node, place: &Place<'_>) {
     let look = crate::trimmed::Look { flipped: false, ..place.look(node) };
     let faces = Faces {
         side: node.flag("side", true),
@@ -59,13 +60,13 @@ fn solid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
         _ => [node.number("bottomRadius", 1.0), node.number("height", 2.0), 1.0],
     };
     if !sizes.iter().all(|&s| s > 0.0) {
-        return walk.stage.notes.lose(
+        return context.stage.notes.lose(
             node.source(),
             ReadIssue::InNode { node: node.kind.clone(), cause: ReadIssue::Empty.boxed() },
         );
     }
     let [a, b, _] = sizes;
-    walk.stage.solid(&place.transform, &look, |part, look| match node.kind.as_str() {
+    context.stage.solid(&place.transform, &look, |part, look| match node.kind.as_str() {
         "Box" => primitives::cuboid(part, sizes.into(), look),
         "Sphere" => primitives::sphere(part, a, look),
         "Cylinder" => primitives::cylinder(part, a, b, faces, look),
@@ -73,14 +74,14 @@ fn solid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
     });
 }
 
-fn polygons_of(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) {
-    let graph = walk.graph;
+fn polygons_of(context: &mut Context<'_>, ix: NodeIx, place: &Place<'_>) {
+    let graph = context.graph;
     let node = graph.node(ix);
     let coordinates = graph.child(ix, "coord", &["Coordinate", "CoordinateDouble"]);
     let numbers = coordinates.map(|c| graph.node(c).numbers("point")).unwrap_or_default();
     let points: Vec<DVec3> = numbers.chunks_exact(3).map(DVec3::from_slice).collect();
     let size = points.len() + node.fields.iter().map(|(_, v)| v.size()).sum::<usize>();
-    if !walk.stage.afford(size, node.source()) {
+    if !context.stage.afford(size, node.source()) {
         return;
     }
     let all = || (0..points.len()).map(|i| i as f64).collect::<Vec<f64>>();
@@ -101,9 +102,9 @@ fn polygons_of(walk: &mut Walk<'_>, ix: NodeIx, place: &Place<'_>) {
     if lost > 0 {
         let cause = ReadIssue::PolygonsLost { polygons: lost }.boxed();
         let message = ReadIssue::InNode { node: node.kind.clone(), cause };
-        walk.stage.notes.lose(node.source(), message);
+        context.stage.notes.lose(node.source(), message);
     }
-    walk.stage.triangles(points, triangles, &place.transform, &place.look(node));
+    context.stage.triangles(points, triangles, &place.transform, &place.look(node));
 }
 
 /// Corners in groups of `each`, −1 behind each group.
@@ -138,12 +139,12 @@ fn runs(points: &[DVec3], index: &[f64], cut: fn(&[u32], &mut Vec<[u32; 3]>)) ->
     (triangles, lost)
 }
 
-fn elevation_grid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
+fn elevation_grid(context: &mut Context<'_>, node: &Node, place: &Place<'_>) {
     let heights = node.numbers("height");
     let (columns, rows) = (node.count("xDimension", 0), node.count("zDimension", 0));
     let fits = columns.checked_mul(rows).is_some_and(|n| n <= heights.len());
     if !fits || columns < 2 || rows < 2 {
-        return walk.stage.notes.lose(
+        return context.stage.notes.lose(
             node.source(),
             ReadIssue::TooFew {
                 what: "heights of the ElevationGrid",
@@ -152,7 +153,7 @@ fn elevation_grid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
             },
         );
     }
-    if !walk.stage.afford(columns * rows, node.source()) {
+    if !context.stage.afford(columns * rows, node.source()) {
         return;
     }
     let (dx, dz) = (node.number("xSpacing", 1.0), node.number("zSpacing", 1.0));
@@ -166,5 +167,5 @@ fn elevation_grid(walk: &mut Walk<'_>, node: &Node, place: &Place<'_>) {
             triangles.extend([[a, d, c], [a, c, b]]);
         }
     }
-    walk.stage.triangles(points, triangles, &place.transform, &place.look(node));
+    context.stage.triangles(points, triangles, &place.transform, &place.look(node));
 }

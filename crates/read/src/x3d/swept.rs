@@ -7,7 +7,7 @@
 //! trajectory in the xz plane that says how far out each direction is: (z·x', y, z·z') for profile points (y, z) and
 //! trajectory points (x', z').
 
-use super::surfaces;
+use super::curves::{curve2, curve3};
 use crate::scene::graph::{Graph, NodeIx};
 use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve2, DVec2, DVec3, NurbsCurve2, NurbsSurface};
@@ -27,8 +27,7 @@ pub(super) fn swept(
     let trajectory = graph
         .child(ix, "trajectoryCurve", &["NurbsCurve"])
         .ok_or(ReadIssue::Missing { what: "trajectory" })?;
-    let points: Vec<DVec3> =
-        surfaces::curve3(graph, trajectory, notes).iter().map(|p| p.truncate() / p.w).collect();
+    let points: Vec<DVec3> = curve3(graph, trajectory, notes).iter().map(|p| p.truncate() / p.w).collect();
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
         return Err(ReadIssue::TooFew { what: "points of the trajectory", found: 0, least: 2 });
     };
@@ -87,7 +86,7 @@ fn planar(
 }
 
 fn curve(node: &crate::scene::graph::Node, notes: &mut Vec<ReadIssue>) -> Result<NurbsCurve2, ReadIssue> {
-    match surfaces::curve2(node, notes) {
+    match curve2(node, notes) {
         Some(Ok(Curve2::Nurbs(curve))) => Ok(curve),
         Some(Ok(Curve2::Polyline(points))) => polyline(points),
         Some(Err(reason)) => Err(ReadIssue::InNode { node: node.kind.clone(), cause: reason.boxed() }),

@@ -1,13 +1,14 @@
 //! The walk through groups and shapes.
 
+use super::place::Place;
 use super::{shapes, surfaces};
+use crate::scene::context::Context;
 use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::matrix;
 use crate::scene::stage::{self, Placed, Stage};
-use crate::trimmed::Look;
 use chordal_brep::{Color, LooseKind, ReadIssue};
 use chordal_nurbs::DAffine3;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 /// Uses within uses deeper than this refer in a circle.
 const MAX_DEPTH: u32 = 600;
@@ -15,11 +16,9 @@ const MAX_DEPTH: u32 = 600;
 /// Fills the stage with the shapes of a graph.
 pub(super) fn walk(graph: &Graph, stage: &mut Stage) {
     let mut walk = Walk {
-        graph,
-        stage,
+        context: Context::new(graph, stage),
         uses: stage::uses(graph),
         parts: FxHashMap::default(),
-        noted: FxHashSet::default(),
         active: vec![false; graph.nodes.len()],
         depth: 0,
     };
@@ -29,26 +28,14 @@ pub(super) fn walk(graph: &Graph, stage: &mut Stage) {
     }
 }
 
-/// Where a node is, and what nodes above say of it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place<'n> {
-    pub transform: DAffine3,
-    pub color: Option<Color>,
-    /// The name of the nearest named node.
-    pub name: &'n str,
-}
-
 /// A colour, and what a node consists of when it is used in it.
 type Coloured = (Option<Color>, Vec<Placed>);
 
-pub(super) struct Walk<'a> {
-    pub graph: &'a Graph,
-    pub stage: &'a mut Stage,
+struct Walk<'a> {
+    context: Context<'a>,
     uses: Vec<u32>,
     /// What nodes used more than once consist of, by the colour they were used in.
     parts: FxHashMap<NodeIx, Vec<Coloured>>,
-    /// Kinds of nodes about which something has been said.
-    noted: FxHashSet<String>,
     /// Nodes being visited: one that is used inside itself would never end.
     active: Vec<bool>,
     depth: u32,
@@ -79,13 +66,17 @@ const GROUPS: &[&str] = &[
 
 impl<'a> Walk<'a> {
     fn node(&mut self, ix: NodeIx, place: &Place<'_>) {
-        let graph = self.graph;
+        let graph = self.context.graph;
         let node = graph.node(ix);
-        if self.depth >= MAX_DEPTH || !self.stage.afford(0, node.source()) {
+        if self.depth >= MAX_DEPTH || !self.context.stage.afford(0, node.source()) {
             return;
         }
         if std::mem::replace(&mut self.active[ix as usize], true) {
-            return self.stage.notes.lose(node.source(), ReadIssue::UsedInItself { node: node.kind.clone() });
+            return self
+                .context
+                .stage
+                .notes
+                .lose(node.source(), ReadIssue::UsedInItself { node: node.kind.clone() });
         }
         self.depth += 1;
         let name = if node.name.is_empty() { place.name } else { &node.name };
@@ -101,23 +92,23 @@ impl<'a> Walk<'a> {
 
     /// A node that is used more than once becomes a part.
     fn used_often(&mut self, ix: NodeIx, place: &Place<'_>) {
-        let source = self.graph.node(ix).source();
+        let source = self.context.graph.node(ix).source();
         let known = self.parts.get(&ix).and_then(|all| all.iter().find(|(color, _)| *color == place.color));
         let placed = match known {
             Some((_, placed)) => placed.clone(),
             None => {
-                self.stage.open_part(place.name, source);
+                self.context.stage.open_part(place.name, source);
                 self.visit(ix, &Place { transform: DAffine3::IDENTITY, ..*place });
-                let placed = self.stage.close_part();
+                let placed = self.context.stage.close_part();
                 self.parts.entry(ix).or_default().push((place.color, placed.clone()));
                 placed
             }
         };
-        self.stage.place(&placed, &place.transform, source);
+        self.context.stage.place(&placed, &place.transform, source);
     }
 
     fn visit(&mut self, ix: NodeIx, place: &Place<'_>) {
-        let graph = self.graph;
+        let graph = self.context.graph;
         let node = graph.node(ix);
         match node.kind.as_str() {
             "Shape" => self.shape(ix, place),
@@ -125,11 +116,11 @@ impl<'a> Walk<'a> {
             "LOD" => {
                 let levels = children(node, &["level", "children"]);
                 if levels.len() > 1 {
-                    self.note(node, ReadIssue::FirstLevelOnly);
+                    self.context.note(node, ReadIssue::FirstLevelOnly);
                 }
                 levels.first().inspect(|&&level| self.node(level, place));
             }
-            "Inline" => self.stage.notes.lose(node.source(), ReadIssue::OtherFile),
+            "Inline" => self.context.stage.notes.lose(node.source(), ReadIssue::OtherFile),
             kind if GROUPS.contains(&kind) => {
                 let moves = matches!(kind, "Transform" | "CADPart" | "EspduTransform");
                 let by = if moves {
@@ -143,16 +134,17 @@ impl<'a> Walk<'a> {
                 }
             }
             "CoordinateDeformer" => {
-                self.stage
+                self.context
+                    .stage
                     .notes
                     .lose(node.source(), ReadIssue::Unsupported { what: "CoordinateDeformer".into() });
             }
             "NurbsSet" => {}
             _ if self.geometry(ix, place) => {}
             kind if graph.prototypes.get(kind).is_some_and(|p| p.external) => {
-                self.stage.notes.lose(node.source(), ReadIssue::OtherFile);
+                self.context.stage.notes.lose(node.source(), ReadIssue::OtherFile);
             }
-            kind if !kind.is_empty() && !is_silent(kind) => self.note(node, ReadIssue::NotRead),
+            kind if !kind.is_empty() && !is_silent(kind) => self.context.note(node, ReadIssue::NotRead),
             _ => {}
         }
     }
@@ -163,12 +155,12 @@ impl<'a> Walk<'a> {
         if which >= 0.0 {
             choices.get(which as usize).inspect(|&&choice| self.node(choice, place));
         } else if !choices.is_empty() {
-            self.note(node, ReadIssue::NoChoice);
+            self.context.note(node, ReadIssue::NoChoice);
         }
     }
 
     fn shape(&mut self, ix: NodeIx, place: &Place<'_>) {
-        let graph = self.graph;
+        let graph = self.context.graph;
         let color = graph.child(ix, "appearance", &["Appearance"]).and_then(|look| appearance(graph, look));
         let place = Place { color: color.or(place.color), ..*place };
         let node = graph.node(ix);
@@ -187,40 +179,23 @@ impl<'a> Walk<'a> {
 
     /// Reads the geometry of a shape; false where it is none.
     fn geometry(&mut self, ix: NodeIx, place: &Place<'_>) -> bool {
-        let graph: &'a Graph = self.graph;
+        let graph: &'a Graph = self.context.graph;
         let node = graph.node(ix);
         match node.kind.as_str() {
             "NurbsCurve" | "LineSet" | "IndexedLineSet" | "NurbsCurve2D" | "Polyline2D" | "Arc2D"
             | "Circle2D" => {
-                self.stage.loose(LooseKind::Wire, place.name, node.source());
+                self.context.stage.loose(LooseKind::Wire, place.name, node.source());
             }
-            "PointSet" | "Polypoint2D" => self.stage.loose(LooseKind::Point, place.name, node.source()),
-            "Text" => self.note(node, ReadIssue::Unsupported { what: "text".into() }),
-            _ => return surfaces::read(self, ix, place) || shapes::read(self, ix, place),
+            "PointSet" | "Polypoint2D" => {
+                self.context.stage.loose(LooseKind::Point, place.name, node.source())
+            }
+            "Text" => self.context.note(node, ReadIssue::Unsupported { what: "text".into() }),
+            _ => {
+                return surfaces::read(&mut self.context, ix, place)
+                    || shapes::read(&mut self.context, ix, place);
+            }
         }
         true
-    }
-
-    /// Says something once for each kind of node.
-    pub(super) fn note(&mut self, node: &Node, what: ReadIssue) {
-        if self.noted.insert(node.kind.clone()) {
-            self.stage
-                .notes
-                .warn(node.source(), ReadIssue::InNode { node: node.kind.clone(), cause: what.boxed() });
-        }
-    }
-}
-
-impl Place<'_> {
-    /// What the faces of a shape have besides their shape.
-    pub(super) fn look(&self, node: &Node) -> Look {
-        Look {
-            name: self.name.to_owned(),
-            color: self.color,
-            flipped: !node.flag("ccw", true),
-            source: node.source(),
-            ..Look::default()
-        }
     }
 }
 

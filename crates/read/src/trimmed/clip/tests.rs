@@ -1,5 +1,5 @@
 use crate::assemble::Notes;
-use crate::trimmed::{Piece, Role, Scale, TrimLoop, chain, nest};
+use crate::trimmed::{Piece, Role, Scale, TrimLoop, chain, nest, polygon};
 use chordal_brep::{ReadIssue, Source};
 use chordal_nurbs::{Curve2, DVec2, DVec3, Frame2, NurbsSurface, Surface};
 use proptest::prelude::*;
@@ -44,7 +44,7 @@ fn enclosed(trims: &[TrimLoop]) -> Result<f64, ReadIssue> {
     let outline = |pieces: &[Piece]| -> Vec<DVec2> {
         pieces.iter().flat_map(|piece| (0..256).map(|k| piece.at(f64::from(k) / 256.0))).collect()
     };
-    Ok(loops.map(|c| nest::area(&outline(&c.pieces))).sum())
+    Ok(loops.map(|c| polygon::area(&outline(&c.pieces))).sum())
 }
 
 /// The same by counting points.

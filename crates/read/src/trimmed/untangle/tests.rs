@@ -1,6 +1,6 @@
 use crate::Winding;
 use crate::assemble::Notes;
-use crate::trimmed::{Piece, Role, Scale, TrimLoop, chain, meet, nest};
+use crate::trimmed::{Piece, Role, Scale, TrimLoop, chain, meet, nest, polygon};
 use chordal_brep::{ReadIssue, Source};
 use chordal_nurbs::{Curve2, DVec2, DVec3, Frame2, NurbsSurface, Surface};
 use proptest::prelude::*;
@@ -40,7 +40,7 @@ fn area(trims: &[TrimLoop]) -> f64 {
     let all: Vec<chain::Chain> = faces.into_iter().flatten().collect();
     let flats = meet::flattened(&all, &scale);
     assert_eq!(meet::meetings(&flats, &scale).crossings, 0);
-    all.iter().map(|c| nest::area(&c.polygon(&scale))).sum()
+    all.iter().map(|c| polygon::area(&c.polygon(&scale))).sum()
 }
 
 /// How many times a loop goes round a point, by the angles seen from there.
