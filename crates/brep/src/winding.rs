@@ -18,7 +18,7 @@
 //! Not guaranteed: strands that cross between their nodes may leave a node that no loop can be led through; then there
 //! is no result.
 
-use chordal_nurbs::DVec2;
+use chordal_nurbs::{DVec2, orient};
 use std::cmp::Ordering;
 
 /// A stretch of loops between two nodes.
@@ -132,12 +132,6 @@ fn crossed(a: DVec2, b: DVec2, p: DVec2) -> i32 {
         (false, true) if orient(a, b, p) < 0.0 => -1,
         _ => 0,
     }
-}
-
-/// Exact sign of the turn a → b → c: positive where it is to the left.
-fn orient(a: DVec2, b: DVec2, c: DVec2) -> f64 {
-    let coord = |p: DVec2| robust::Coord { x: p.x, y: p.y };
-    robust::orient2d(coord(a), coord(b), coord(c))
 }
 
 /// One end of a strand, seen from its node.

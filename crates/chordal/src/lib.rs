@@ -94,6 +94,7 @@ pub use sewing::Sewing;
 pub use chordal_audit as audit;
 pub use chordal_brep as brep;
 pub use chordal_brep::Severity;
+pub use chordal_chart as chart;
 pub use chordal_document as document;
 #[cfg(feature = "gpu")]
 pub use chordal_gpu as gpu;

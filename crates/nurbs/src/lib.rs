@@ -54,6 +54,7 @@ mod jet;
 mod knots;
 mod nurbs_curve;
 mod nurbs_surface;
+mod orient;
 mod passes;
 mod proof;
 mod segment;
@@ -79,6 +80,7 @@ pub use invert_surface::{Inversion, SurfaceInverter};
 pub use jet::{Curve2Jet, CurveJet, SurfaceJet};
 pub use nurbs_curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_surface::NurbsSurface;
+pub use orient::orient;
 pub use passes::BasisTable;
 pub use proof::{
     ChordCriterion, ChordCut, Component, Facet, FacetBound, Piece, SurfaceBounds, Wrap, chord_bound,

@@ -1,8 +1,7 @@
 //! One face with the edges as they are: attempts, each with more remedies than the last ([`crate::effort`]).
 
-use crate::chart::FaceContext;
-use crate::crossings::{coarse_chords, shut_corners};
 use crate::effort::{Effort, Remedy, Setback};
+use crate::face_context::FaceContext;
 use crate::face_mesh::{FaceMesh, boundary_triangles, shape, sweep_axis};
 use crate::face_result::{FaceResult, Proof};
 use crate::fill_loop::fill_and_prove;
@@ -10,9 +9,8 @@ use crate::limits::Limits;
 use crate::options::{Cancel, Options};
 use crate::prove::Prover;
 use crate::triangulate::clip_ears;
-use crate::uncross::loops_cross;
-use crate::unroll::Chart;
 use chordal_brep::MeshIssue;
+use chordal_chart::{Chart, coarse_chords, loops_cross, shut_corners};
 use chordal_nurbs::{DVec2, SurfaceBounds, UvBox};
 
 /// Meshes one face, in as many attempts as the ladder of remedies has.
@@ -52,11 +50,12 @@ fn attempt(
     let edges_are_final = effort.has(Remedy::CrossingLoops);
     // A face without area has no triangles, and its neighbours meet where it lies.
     let nothing = || Ok(Box::new(FaceResult { bound: "no area", ..FaceResult::default() }));
-    if !context.surface.surface.has_area() {
+    if !context.trimmed.surface.surface.has_area() {
         return nothing();
     }
     // 1. Unroll the face into one chart; its loops may enclose nothing.
-    let chart = Chart::new(context, limits, effort.seam_chord(), !effort.has(Remedy::UncutCreases))?;
+    let seams = limits.seams(effort.seam_chord());
+    let chart = Chart::new(&context.trimmed, &seams, !effort.has(Remedy::UncutCreases))?;
     if chart.loops.is_empty() {
         return nothing();
     }
@@ -71,7 +70,7 @@ fn attempt(
     };
     let mut face = FaceMesh::new(context, limits, chart, shape, triangles, &options.bulk);
     // 3. Fill it and prove it.
-    let bounds = SurfaceBounds::new(context.surface.surface, uv_box, limits.tolerance);
+    let bounds = SurfaceBounds::new(context.trimmed.surface.surface, uv_box, limits.tolerance);
     let mut prover = Prover::new(&bounds, limits, options, context.deadline, cancel, effort);
     if are_loops_crossing && face.is_turned_somewhere() {
         prover = prover.for_crossing_loops();
@@ -83,7 +82,7 @@ fn attempt(
         proof = Proof { error: f64::INFINITY, bound: "none" };
     } else if !edges_are_final {
         // 5. Corners without an area between their chords need finer chords.
-        let shut = shut_corners(context, face.chart());
+        let shut = shut_corners(&context.trimmed, face.chart());
         if !shut.is_empty() {
             return Err(Setback::CoarseEdges(shut));
         }
@@ -108,14 +107,14 @@ fn crossing_triangles(
     culprits: &[u32],
     effort: Effort,
 ) -> Result<Vec<[u32; 3]>, Setback> {
-    let coarse = coarse_chords(context, chart, culprits);
+    let coarse = coarse_chords(&context.trimmed, chart, culprits, &|| context.is_out_of_time());
     if context.is_out_of_time() || points.len() > MOST_EARS {
         return Err(MeshIssue::LoopsCross.into());
     }
     if !effort.has(Remedy::CrossingLoops) && !coarse.is_empty() {
         return Err(Setback::CoarseEdges(coarse));
     }
-    let has_creases = context.surface.creases.iter().any(|creases| !creases.is_empty());
+    let has_creases = context.trimmed.surface.creases.iter().any(|creases| !creases.is_empty());
     if has_creases && !effort.has(Remedy::UncutCreases) {
         return Err(Setback::Crossing);
     }

@@ -5,7 +5,7 @@
 //! vertices and shape triangles. Proofs never use them: bounds are computed on this thread, in double
 //! precision.
 
-use crate::surface::FaceSurface;
+use chordal_chart::FaceSurface;
 use chordal_nurbs::{BulkEvaluator, DVec2, Surface, SurfaceJet};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;

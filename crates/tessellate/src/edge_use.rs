@@ -6,9 +6,9 @@
 
 use crate::limits::Limits;
 use crate::metric::Sizing;
-use crate::surface::{FaceSurface, Near};
 use crate::trace::Trace;
 use chordal_brep::{Edge, Pcurve};
+use chordal_chart::{FaceSurface, Near};
 use chordal_nurbs::{Curve, CurveJet, DVec2, DVec3, Range, SurfaceJet};
 use std::fmt::Debug;
 

@@ -6,7 +6,7 @@
 //! 4. Halve chords over which a face turns too far.
 //!
 //! Faces never add vertices on edges on their own. What they find out later comes back as a request
-//! ([`EdgeSamples::split`]).
+//! ([`split_chords`]).
 
 mod corners;
 mod turns;
@@ -16,28 +16,31 @@ use self::turns::{turning_less, turning_less_between};
 use crate::clock::Deadline;
 use crate::edge_use::{EdgePiece, EdgeSplitter, EdgeUse};
 use crate::limits::Limits;
-use crate::snap::settled;
-use crate::surface::Near;
 use crate::trace::Trace;
-use chordal_brep::{Edge, Part};
+use chordal_brep::{Edge, MeshIssue, Part};
+use chordal_chart::{EdgeSamples, Near, settled};
 use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, bisect};
 
-/// One edge as a polyline.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct EdgeSamples {
-    /// Parameters, ends included.
-    pub t: Vec<f64>,
-    /// Positions; the first and the last are those of the vertices of the part.
-    pub points: Vec<DVec3>,
-    /// Of every chord, an upper bound of its distance from the curve.
-    pub sag: Vec<f64>,
+/// One edge as a polyline, with what its sampling found out.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SampledEdge {
+    pub samples: EdgeSamples,
     /// The fewest chords that the tolerance allows by the curvature of the curve alone. The lower bound of
     /// the number of triangles needs it.
     pub fewest: f64,
     /// Which parts of an edge method ran.
     pub trace: Trace,
-    /// The edge needs more chords, or more time, than one edge may take; it has no samples.
-    pub given_up: bool,
+}
+
+/// The chords of an edge while they are made.
+#[derive(Default)]
+struct Chords {
+    /// The parameters of their ends.
+    t: Vec<f64>,
+    fewest: f64,
+    trace: Trace,
+    /// The edge needs more chords, or more time, than one edge may take.
+    given_up: bool,
 }
 
 /// Probes between two knots of the curve. The need for chords is taken as constant around each probe: fewer
@@ -107,9 +110,12 @@ impl Sampling<'_, '_, '_> {
     }
 }
 
-impl EdgeSamples {
+impl SampledEdge {
     /// Samples an edge with at least `least` chords.
-    pub(crate) fn new(
+    ///
+    /// # Errors
+    /// Where the edge needs more chords, or more time, than one edge may take.
+    pub fn new(
         part: &Part,
         edge: &Edge,
         uses: &[EdgeUse<'_, '_>],
@@ -117,10 +123,11 @@ impl EdgeSamples {
         splitter: Option<&dyn EdgeSplitter>,
         least: usize,
         deadline: Option<Deadline>,
-    ) -> Self {
+    ) -> Result<Self, MeshIssue> {
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
-            return Self { t: vec![edge.range.start], points: vec![ends[0]], ..Self::default() };
+            let samples = EdgeSamples { t: vec![edge.range.start], points: vec![ends[0]], sag: Vec::new() };
+            return Ok(Self { samples, ..Self::default() });
         };
         let sampling = Sampling {
             curve,
@@ -132,8 +139,7 @@ impl EdgeSamples {
             of_faces: Limits { tolerance: CHORD_AIM * limits.largest(), ..*limits },
             deadline,
         };
-        let mut samples = Self::default();
-        samples.t.push(edge.range.start);
+        let mut chords = Chords { t: vec![edge.range.start], ..Chords::default() };
         // 1. Pieces between corners, poles and creases.
         let mut stops = sampling.poles_on_the_way();
         stops.extend(sampling.crease_crossings());
@@ -144,36 +150,50 @@ impl EdgeSamples {
         // 2. to 4. The chords of each piece.
         for range in pieces.into_iter().map(|piece| piece.range) {
             let piece = EdgePiece { curve, whole: edge.range, range, tolerance: sampling.limits.tolerance };
-            match splitter.and_then(|s| s.parameters(&piece, uses, &mut samples.trace)) {
-                Some(t) => samples.add_given(t, &sampling, range),
-                None => samples.add_smooth(&sampling, range),
+            match splitter.and_then(|s| s.parameters(&piece, uses, &mut chords.trace)) {
+                Some(t) => chords.add_given(t, &sampling, range),
+                None => chords.add_smooth(&sampling, range),
             }
-            if samples.given_up || sampling.is_spent(samples.t.len()) {
-                return Self { given_up: true, ..Self::default() };
+            if chords.given_up || sampling.is_spent(chords.t.len()) {
+                return Err(MeshIssue::EdgeGivenUp);
             }
         }
         let least = if edge.start == edge.end { least.max(LEAST_OF_CLOSED) } else { least };
-        while samples.t.len() < least + 1 {
-            samples.t = halved(&samples.t);
+        while chords.t.len() < least + 1 {
+            chords.t = halved(&chords.t);
         }
-        samples.measure(curve);
-        samples.pin_ends(ends);
-        samples
+        let Chords { t, fewest, trace, .. } = chords;
+        Ok(Self { samples: measured(t, curve, ends), fewest, trace })
     }
+}
 
-    /// Positions and bounds of the chords between the parameters.
-    fn measure(&mut self, curve: &Curve) {
-        self.sag = self.t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();
-        self.points = self.t.iter().map(|&t| curve.point(t)).collect();
+/// Positions and bounds of the chords between these parameters; `ends` are the vertices of the part.
+fn measured(t: Vec<f64>, curve: &Curve, ends: [DVec3; 2]) -> EdgeSamples {
+    let sag = t.windows(2).map(|t| curve.chord_error(t[0], t[1])).collect();
+    let mut points: Vec<DVec3> = t.iter().map(|&t| curve.point(t)).collect();
+    points[0] = ends[0];
+    if let Some(last) = points.last_mut() {
+        *last = ends[1];
     }
+    EdgeSamples { t, points, sag }
+}
 
-    fn pin_ends(&mut self, ends: [DVec3; 2]) {
-        self.points[0] = ends[0];
-        if let Some(last) = self.points.last_mut() {
-            *last = ends[1];
+/// Cuts the named chords of an edge, which are in order, into this many parts.
+pub(crate) fn split_chords(samples: &mut EdgeSamples, edge: &Edge, chords: &[u32], parts: u32) {
+    let Some(curve) = edge.curve.as_deref() else { return };
+    let ends = [samples.points[0], samples.points[samples.points.len() - 1]];
+    let mut t = vec![samples.t[0]];
+    for (k, pair) in samples.t.windows(2).enumerate() {
+        if chords.binary_search(&(k as u32)).is_ok() {
+            let at = |i: u32| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(parts);
+            t.extend((1..parts).map(at));
         }
+        t.push(pair[1]);
     }
+    *samples = measured(t, curve, ends);
+}
 
+impl Chords {
     /// Appends the chords of a piece without corners.
     fn add_smooth(&mut self, sampling: &Sampling<'_, '_, '_>, range: Range) {
         let probes = Probes::new(sampling, range);
@@ -246,23 +266,6 @@ impl EdgeSamples {
             return;
         }
         self.t.extend_from_slice(&turning_less(t, sampling, range)[1..]);
-    }
-
-    /// Cuts the named chords, which are in order, into this many parts.
-    pub fn split(&mut self, edge: &Edge, chords: &[u32], parts: u32) {
-        let Some(curve) = edge.curve.as_deref() else { return };
-        let ends = [self.points[0], self.points[self.points.len() - 1]];
-        let mut t = vec![self.t[0]];
-        for (k, pair) in self.t.windows(2).enumerate() {
-            if chords.binary_search(&(k as u32)).is_ok() {
-                let at = |i: u32| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(parts);
-                t.extend((1..parts).map(at));
-            }
-            t.push(pair[1]);
-        }
-        self.t = t;
-        self.measure(curve);
-        self.pin_ends(ends);
     }
 }
 

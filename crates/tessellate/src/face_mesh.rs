@@ -12,17 +12,15 @@ mod vertices;
 pub(crate) use shape::{Shape, boundary_triangles, shape, sweep_axis};
 
 use crate::bulk::{Bulk, Foreseen};
-use crate::chart::FaceContext;
-use crate::edges::EdgeSamples;
-use crate::keys::{Key, Segment};
+use crate::face_context::FaceContext;
 use crate::limits::Limits;
 use crate::metric::Metric;
 use crate::report::Phases;
-use crate::surface::FaceSurface;
 use crate::trace::Trace;
-use crate::triangulate::{Location, Triangulation, orient};
-use crate::unroll::Chart;
+use crate::triangulate::{Location, Triangulation};
 use chordal_brep::{Face, Part};
+use chordal_chart::{Chart, EdgeSamples, FaceSurface, Key, Segment};
+use chordal_nurbs::orient;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 use vertices::Vertices;
 
@@ -81,22 +79,22 @@ impl<'a, 's> FaceMesh<'a, 's> {
 
     /// The surface of the face.
     pub fn surface(&self) -> &'a FaceSurface<'s> {
-        self.context.surface
+        self.context.trimmed.surface
     }
 
     /// The face in the model.
     pub fn face(&self) -> &'a Face {
-        self.context.face
+        self.context.trimmed.face
     }
 
     /// The part that the face belongs to.
     pub fn part(&self) -> &'a Part {
-        self.context.part
+        self.context.trimmed.part
     }
 
     /// The polyline of an edge of the part.
     pub fn edge_samples(&self, edge: u32) -> &'a EdgeSamples {
-        &self.context.edges[edge as usize]
+        &self.context.trimmed.edges[edge as usize]
     }
 
     /// What the mesh must keep.
@@ -197,8 +195,8 @@ impl<'a, 's> FaceMesh<'a, 's> {
     /// surface.
     pub fn position(&self, key: Key) -> DVec3 {
         match key {
-            Key::Vertex(v) => self.context.part.vertices[v as usize].point,
-            Key::Edge(e, i) => self.context.edges[e as usize].points[i as usize],
+            Key::Vertex(v) => self.context.trimmed.part.vertices[v as usize].point,
+            Key::Edge(e, i) => self.context.trimmed.edges[e as usize].points[i as usize],
             // Behind the seam's own points come those inside the face, in the order of the triangulation.
             Key::Private(k) => match self.chart.private.get(k as usize) {
                 Some(&point) => point,
@@ -238,7 +236,7 @@ impl<'a, 's> FaceMesh<'a, 's> {
 
     /// Announces points that will be inserted, so that a device may evaluate them all at once.
     pub fn foresee(&mut self, points: impl Iterator<Item = DVec2>) {
-        self.foreseen.ask(self.context.surface, points);
+        self.foreseen.ask(self.context.trimmed.surface, points);
     }
 
     /// Inserts a point that is known to lie at this place; returns its index, or `None` on a vertex, on the

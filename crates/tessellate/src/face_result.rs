@@ -1,10 +1,11 @@
 //! The triangles of one face, before its vertices are joined with those of its neighbours.
 
-use crate::keys::{Key, SharedEdge};
 use crate::limits::{Bound, Limits};
 use crate::report::Phases;
+use crate::shared_edge::SharedEdge;
 use crate::trace::Trace;
 use chordal_brep::MeshIssue;
+use chordal_chart::Key;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 
 /// The proof of a face.

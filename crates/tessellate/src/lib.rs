@@ -5,11 +5,11 @@
 //! 1. Prepare the surfaces of the part (`part_job`).
 //! 2. Sample the edges, each once for all of its faces (`edges`).
 //! 3. Mesh the faces, in rounds (`rounds`). For one face (`attempts`): unroll its loops into one chart
-//!    (`chart`, `unroll`), triangulate them (`triangulate`), fill the inside (`fill_loop`, `rows`), and prove
+//!    ([`chordal_chart`]), triangulate them (`triangulate`), fill the inside (`fill_loop`, `rows`), and prove
 //!    every triangle (`prove`). A face that finds an edge too coarse asks for finer chords; the requests of a
 //!    round are merged, and only the faces at those edges run again.
 //! 4. Where loops cross in truth, give the model vertices there and loops that do not, and mesh it again
-//!    (`uncross`).
+//!    ([`chordal_chart::uncrossed`]).
 //! 5. Join the faces (`orient`, `stitch`).
 //!
 //! How hard a face is tried, and in which order remedies are taken, is written down in `effort`. Other crates
@@ -17,19 +17,17 @@
 
 mod attempts;
 mod bulk;
-mod chart;
 mod clock;
-mod crossings;
 mod default_fill;
 mod edge_use;
 mod edges;
 mod effort;
+mod face_context;
 mod face_mesh;
 mod face_result;
 mod fallback;
 mod fill_loop;
 mod fill_method;
-mod keys;
 mod known_faces;
 mod limits;
 mod lower_bound;
@@ -47,14 +45,11 @@ mod quads;
 mod report;
 mod rounds;
 mod rows;
+mod shared_edge;
 mod shared_inner_edges;
-mod snap;
 mod stitch;
-mod surface;
 mod trace;
 mod triangulate;
-mod uncross;
-mod unroll;
 
 pub use bulk::Bulk;
 pub use clock::Stopwatch;

@@ -1,12 +1,17 @@
 //! A lower bound of the number of triangles on one face (`docs/report.md`). It depends on the model only, not
 //! on the edges of this mesh.
 
-use crate::edges::EdgeSamples;
 use chordal_brep::{Face, Loop};
+use chordal_chart::EdgeSamples;
 
 /// The larger of the bound by curvature and V_b − 2χ, where V_b counts the vertices that the curves of the
-/// edges need.
-pub(crate) fn lower_bound(face: &Face, edges: &[EdgeSamples], closed: &[bool], curvature: f64) -> f64 {
+/// edges need. `fewest`: of every edge, the fewest chords that its curve needs.
+pub(crate) fn lower_bound(
+    face: &Face,
+    (edges, fewest): (&[EdgeSamples], &[f64]),
+    closed: &[bool],
+    curvature: f64,
+) -> f64 {
     let mut vertices = 0.0;
     let mut components = 0usize;
     for a_loop in &face.loops {
@@ -29,7 +34,7 @@ pub(crate) fn lower_bound(face: &Face, edges: &[EdgeSamples], closed: &[bool], c
                 for i in (0..n).filter(|&i| real[i]) {
                     let edge = coedges[i].edge.index();
                     let least = if closed[edge] { 3.0 } else { 1.0 };
-                    vertices += edges[edge].fewest.max(least);
+                    vertices += fewest[edge].max(least);
                 }
             }
         }

@@ -2,6 +2,7 @@
 //! be.
 
 use crate::limits::Limits;
+use chordal_chart::{SeamMetric, Seams};
 use chordal_nurbs::{DVec2, DVec3, SurfaceJet};
 
 /// A symmetric positive semi-definite form on parameter space.
@@ -129,5 +130,18 @@ impl Sizing {
         let per = 1.0 / (8.0 * limits.tolerance);
         let signed = Metric { uu: l * per, uv: m * per, vv: k * per };
         Some(Self { metric, signed, gauss: k1 * k2, area })
+    }
+}
+
+impl SeamMetric for Limits {
+    fn length(&self, jet: &SurfaceJet, step_uv: DVec2) -> f64 {
+        Sizing::new(jet, self).map_or(0.0, |sizing| sizing.metric.length(step_uv))
+    }
+}
+
+impl Limits {
+    /// Cuts through faces, in chords of this length in the metric.
+    pub(crate) fn seams(&self, chord: f64) -> Seams<'_> {
+        Seams { metric: self, chord, tolerance: self.tolerance }
     }
 }

@@ -6,10 +6,9 @@
 //! decided one by one, first the face that has the largest share of its boundary with decided faces, by the
 //! majority of its chords.
 
-use crate::edges::EdgeSamples;
 use crate::face_result::FaceResult;
-use crate::keys::Key;
 use chordal_brep::{BodyKind, Part, Shell};
+use chordal_chart::{EdgeSamples, Key};
 use chordal_nurbs::DVec3;
 
 /// A chord between two faces: they run along it in the same direction, which is wrong, or in opposite ones.

@@ -1,8 +1,6 @@
 //! The stages of one part, top to bottom.
 
-use crate::chart::FaceContext;
-use crate::clock::{Deadline, Stopwatch};
-use crate::edges::EdgeSamples;
+use crate::clock::Stopwatch;
 use crate::effort::Effort;
 use crate::face_result::{FaceResult, Meshed};
 use crate::fallback::leave_to_default;
@@ -17,9 +15,8 @@ use crate::report::{FaceReport, PartReport};
 use crate::rounds::{Pass, PassResult};
 use crate::shared_inner_edges::separate;
 use crate::stitch::stitch;
-use crate::uncross::{Crossed, Uncrossed, uncrossed};
-use crate::unroll::Chart;
 use chordal_brep::{MeshIssue, Part};
+use chordal_chart::{Chart, Crossed, EdgeSamples, TrimmedFace, Uncrossed, uncrossed};
 use chordal_mesh::PartMesh;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -93,12 +90,12 @@ fn mesh_once(
     // 2. Sample the edges.
     let clock = Stopwatch::of_wall();
     let pass = Pass::new(&job);
-    let (edges, edge_faults) = pass.sample_edges();
+    let sampled = pass.sample_edges();
     report.seconds.edges = clock.seconds();
-    edges.iter().for_each(|e| report.edge_trace.merge(&e.trace));
+    sampled.edges.iter().for_each(|e| report.edge_trace.merge(&e.trace));
     // 3. Mesh the faces, in rounds.
     let clock = Stopwatch::of_wall();
-    let mut result = pass.run_with(edges, edge_faults, done);
+    let mut result = pass.run_with(sampled, done);
     separate(&pass, &mut result);
     let result = leave_to_default(&job, result);
     report.seconds.faces = clock.seconds();
@@ -106,10 +103,10 @@ fn mesh_once(
     let uncrossed = uncrossed_part(&job, &result.edges, &crossed);
     // 4. Join the faces.
     let clock = Stopwatch::of_wall();
-    let PassResult { edges, edge_faults, faces, rounds } = result;
+    let PassResult { edges, fewest, edge_faults, faces, rounds } = result;
     report.rounds = rounds;
     report.edge_faults = edge_faults;
-    report.faces = face_reports(&job, &edges, &faces);
+    report.faces = face_reports(&job, &edges, &fewest, &faces);
     let mut faces: Vec<Option<Box<FaceResult>>> = faces.into_iter().map(Result::ok).collect();
     settle_orientation(&mut faces);
     turn_inside_out(part, &edges, &mut faces);
@@ -131,29 +128,27 @@ fn uncrossed_part(job: &PartJob<'_>, edges: &[EdgeSamples], crossed: &[usize]) -
     if crossed.is_empty() || job.cancel.is_cancelled() {
         return None;
     }
-    let contexts: Vec<(usize, FaceContext<'_, '_>)> = crossed
+    let trimmed: Vec<(usize, TrimmedFace<'_, '_>)> = crossed
         .iter()
         .filter_map(|&face| {
-            let context = FaceContext {
+            let trimmed = TrimmedFace {
                 part: job.part,
                 face: &job.part.faces[face],
                 surface: job.surfaces[face].as_ref()?,
                 edges,
-                doubled: &[],
                 touching: job.known.touching.contains(&face),
-                deadline: job.options.face_timeout.and_then(Deadline::after),
                 resolution: job.resolution,
             };
-            Some((face, context))
+            Some((face, trimmed))
         })
         .collect();
-    let seam_chord = Effort::of_round(0).seam_chord();
+    let seams = job.limits.seams(Effort::of_round(0).seam_chord());
     // A panic of ours leaves the part as it is.
     let healed = caught(|| {
-        let charts: Vec<Crossed<'_, '_>> = contexts
+        let charts: Vec<Crossed<'_, '_>> = trimmed
             .iter()
             .filter_map(|(face, context)| {
-                let chart = Chart::new(context, &job.limits, seam_chord, false).ok()?;
+                let chart = Chart::new(context, &seams, false).ok()?;
                 Some(Crossed { face: *face, context, chart })
             })
             .collect();
@@ -162,7 +157,12 @@ fn uncrossed_part(job: &PartJob<'_>, edges: &[EdgeSamples], crossed: &[usize]) -
     healed.ok().flatten()
 }
 
-fn face_reports(job: &PartJob<'_>, edges: &[EdgeSamples], faces: &[Meshed]) -> Vec<FaceReport> {
+fn face_reports(
+    job: &PartJob<'_>,
+    edges: &[EdgeSamples],
+    fewest: &[f64],
+    faces: &[Meshed],
+) -> Vec<FaceReport> {
     let closed: Vec<bool> = job.part.edges.iter().map(|e| e.start == e.end).collect();
     let pcurve_gaps: Vec<f64> = (job.part.faces.par_iter().zip(&job.surfaces))
         .map(|(face, surface)| {
@@ -185,7 +185,12 @@ fn face_reports(job: &PartJob<'_>, edges: &[EdgeSamples], faces: &[Meshed]) -> V
                 cells: result.cells.clone(),
                 mended: result.mended.clone(),
                 zero_area: result.triangles.is_empty(),
-                lower_bound: lower_bound(&job.part.faces[index], edges, &closed, result.curvature_bound),
+                lower_bound: lower_bound(
+                    &job.part.faces[index],
+                    (edges, fewest),
+                    &closed,
+                    result.curvature_bound,
+                ),
                 ..entry
             },
             Err(issue) => FaceReport { failed: Some(issue.clone()), ..entry },

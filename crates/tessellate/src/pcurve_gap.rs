@@ -4,9 +4,8 @@
 //! by its pcurves gets another boundary, further off by the difference. The file causes this difference, so
 //! it is part of the file's gap.
 
-use crate::edges::EdgeSamples;
-use crate::surface::FaceSurface;
 use chordal_brep::{Coedge, Edge, Face, Loop, Part, Pcurve};
+use chordal_chart::{EdgeSamples, FaceSurface};
 use chordal_nurbs::{Curve, CurveInverter, DVec2, DVec3, Surface};
 
 /// Newton steps along a curve, from a parameter that is nearly the nearest one. They converge quadratically.

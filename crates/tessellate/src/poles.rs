@@ -12,7 +12,8 @@
 //! ```
 
 use crate::face_mesh::FaceMesh;
-use crate::triangulate::{NONE, orient};
+use crate::triangulate::NONE;
+use chordal_nurbs::orient;
 
 /// Flips edges at poles until every triangle there spans a part of the pole's line in the right direction, as
 /// far as possible. Borders of cells that end in the pole are flipped as well, since all places of its line
@@ -52,7 +53,7 @@ fn flat_at_pole(face: &FaceMesh<'_, '_>, t: u32) -> Option<usize> {
     }
     let i = at_pole.iter().position(|&p| p)?;
     let corner = c[i];
-    let pole = face.surface().pole_at(face.xyz(corner), face.context().resolution)?;
+    let pole = face.surface().pole_at(face.xyz(corner), face.context().trimmed.resolution)?;
     let along = 1 - pole.axis;
     let [a, b] = [1, 2].map(|k| face.mesh().points[c[(i + k) % 3] as usize]);
     let mut apex = face.mesh().points[corner as usize];

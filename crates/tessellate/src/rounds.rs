@@ -10,17 +10,17 @@
 //! nothing.
 
 use crate::attempts::mesh_face;
-use crate::chart::FaceContext;
 use crate::clock::{Deadline, Stopwatch};
-use crate::edges::EdgeSamples;
+use crate::edges::{SampledEdge, split_chords};
 use crate::effort::{Effort, MAX_ROUNDS, Setback};
+use crate::face_context::FaceContext;
 use crate::face_result::{FaceResult, Meshed};
-use crate::keys::SharedEdge;
 use crate::options::Options;
 use crate::panics::caught;
 use crate::part_job::PartJob;
-use crate::surface::FaceSurface;
+use crate::shared_edge::SharedEdge;
 use chordal_brep::{Edge, MeshIssue};
+use chordal_chart::{EdgeSamples, FaceSurface, TrimmedFace};
 use chordal_nurbs::Curve;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -41,9 +41,17 @@ pub(crate) struct Pass<'j, 'a> {
 /// An edge that has no samples, and why.
 pub(crate) type EdgeFault = (u32, MeshIssue);
 
+/// The edges of a part as polylines.
+pub(crate) struct SampledEdges {
+    pub edges: Vec<SampledEdge>,
+    pub faults: Vec<EdgeFault>,
+}
+
 /// What a pass makes.
 pub(crate) struct PassResult {
     pub edges: Vec<EdgeSamples>,
+    /// Of every edge, the fewest chords that the tolerance allows.
+    pub fewest: Vec<f64>,
     pub edge_faults: Vec<EdgeFault>,
     pub faces: Vec<Meshed>,
     /// Rounds in which faces asked for finer edges.
@@ -77,47 +85,48 @@ impl<'j, 'a> Pass<'j, 'a> {
     }
 
     /// Samples all edges; those that a panic spoiled have no samples.
-    pub fn sample_edges(&self) -> (Vec<EdgeSamples>, Vec<EdgeFault>) {
+    pub fn sample_edges(&self) -> SampledEdges {
         let all = (0..self.job.part.edges.len()).into_par_iter();
-        let sampled: Vec<Result<EdgeSamples, MeshIssue>> = all.map(|i| self.sample(i, 1)).collect();
+        let sampled: Vec<Result<SampledEdge, MeshIssue>> = all.map(|i| self.sample(i, 1)).collect();
         let mut faults = Vec::new();
         let mut edges = Vec::with_capacity(sampled.len());
         for (i, result) in sampled.into_iter().enumerate() {
             edges.push(result.unwrap_or_else(|issue| {
                 faults.push((i as u32, issue));
-                EdgeSamples::default()
+                SampledEdge::default()
             }));
         }
         for i in self.twins(&edges) {
             match self.sample(i, 2) {
-                Ok(samples) => edges[i] = samples,
+                Ok(sampled) => edges[i] = sampled,
                 Err(issue) => faults.push((i as u32, issue)),
             }
         }
-        (edges, faults)
+        SampledEdges { edges, faults }
     }
 
-    fn sample(&self, edge: usize, least: usize) -> Result<EdgeSamples, MeshIssue> {
+    fn sample(&self, edge: usize, least: usize) -> Result<SampledEdge, MeshIssue> {
         let job = self.job;
         if job.faces_at(edge).next().is_none() {
-            return Ok(EdgeSamples::default());
+            return Ok(SampledEdge::default());
         }
         let splitter = self.options_of_edge(edge).edge_splitter.as_deref();
-        let samples = caught(|| {
+        caught(|| {
             let uses = job.edge_uses(edge);
             let deadline = job.options.face_timeout.and_then(Deadline::after);
-            EdgeSamples::new(job.part, &job.part.edges[edge], &uses, &job.limits, splitter, least, deadline)
-        })?;
-        if samples.given_up { Err(MeshIssue::EdgeGivenUp) } else { Ok(samples) }
+            SampledEdge::new(job.part, &job.part.edges[edge], &uses, &job.limits, splitter, least, deadline)
+        })?
     }
 
     /// Single chords between the same two vertices as another single chord, where the curve is not straight:
     /// they would enclose nothing.
-    fn twins(&self, edges: &[EdgeSamples]) -> Vec<usize> {
+    fn twins(&self, edges: &[SampledEdge]) -> Vec<usize> {
         let model = &self.job.part.edges;
         let ends = |e: &Edge| (e.start.min(e.end), e.start.max(e.end));
-        let mut single: Vec<_> =
-            (0..edges.len()).filter(|&i| edges[i].sag.len() == 1).map(|i| (ends(&model[i]), i)).collect();
+        let mut single: Vec<_> = (0..edges.len())
+            .filter(|&i| edges[i].samples.sag.len() == 1)
+            .map(|i| (ends(&model[i]), i))
+            .collect();
         single.sort_unstable();
         let mut found = Vec::new();
         for group in single.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1) {
@@ -176,14 +185,16 @@ impl<'j, 'a> Pass<'j, 'a> {
     ) -> Result<Meshed, Vec<(u32, u32)>> {
         let job = self.job;
         let context = FaceContext {
-            part: job.part,
-            face: &job.part.faces[face],
-            surface,
-            edges,
+            trimmed: TrimmedFace {
+                part: job.part,
+                face: &job.part.faces[face],
+                surface,
+                edges,
+                touching: job.known.touching.contains(&face),
+                resolution: job.resolution,
+            },
             doubled,
-            touching: job.known.touching.contains(&face),
             deadline,
-            resolution: job.resolution,
         };
         let options = self.options_of_face(face);
         let attempt = |effort: Effort| {
@@ -215,17 +226,14 @@ impl<'j, 'a> Pass<'j, 'a> {
     /// Meshes all faces; those that ask for finer edges, and their neighbours, again. `done` gets the number
     /// of faces that are finished for the first time.
     pub fn run(&self, done: &(dyn Fn(usize) + Sync)) -> PassResult {
-        let (edges, edge_faults) = self.sample_edges();
-        self.run_with(edges, edge_faults, done)
+        self.run_with(self.sample_edges(), done)
     }
 
     /// The same with edges that are sampled already.
-    pub fn run_with(
-        &self,
-        mut edges: Vec<EdgeSamples>,
-        edge_faults: Vec<EdgeFault>,
-        done: &(dyn Fn(usize) + Sync),
-    ) -> PassResult {
+    pub fn run_with(&self, sampled: SampledEdges, done: &(dyn Fn(usize) + Sync)) -> PassResult {
+        let SampledEdges { edges, faults: edge_faults } = sampled;
+        let (mut edges, fewest): (Vec<EdgeSamples>, Vec<f64>) =
+            edges.into_iter().map(|edge| (edge.samples, edge.fewest)).unzip();
         let n = self.job.part.faces.len();
         let unfinished = MeshIssue::EdgesTooCoarse { rounds: MAX_ROUNDS };
         let mut faces: Vec<Meshed> = vec![Err(unfinished.clone()); n];
@@ -254,7 +262,7 @@ impl<'j, 'a> Pass<'j, 'a> {
             rounds = round + 1;
             dirty = self.refine_edges(&mut edges, requests, round);
         }
-        PassResult { edges, edge_faults, faces, rounds }
+        PassResult { edges, fewest, edge_faults, faces, rounds }
     }
 
     /// Cuts the chords that faces asked for; returns the faces at their edges.
@@ -271,7 +279,7 @@ impl<'j, 'a> Pass<'j, 'a> {
         for group in requests.chunk_by(|a, b| a.0 == b.0) {
             let edge = group[0].0 as usize;
             let chords: Vec<u32> = group.iter().map(|request| request.1).collect();
-            edges[edge].split(&self.job.part.edges[edge], &chords, pieces);
+            split_chords(&mut edges[edge], &self.job.part.edges[edge], &chords, pieces);
             dirty.extend(self.job.faces_at(edge));
         }
         dirty.sort_unstable();

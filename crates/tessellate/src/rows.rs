@@ -11,9 +11,7 @@
 
 use crate::limits::Limits;
 use crate::metric::Sizing;
-use crate::snap::settled;
-use crate::surface::FaceSurface;
-use crate::unroll::Chart;
+use chordal_chart::{Chart, FaceSurface, settled};
 use chordal_nurbs::{DVec2, UvBox};
 
 /// The share of an allowed chord that is used. The curvature varies over a triangle, and a triangle that

@@ -7,9 +7,10 @@
 //! insert a point in its middle, which lies on their own surface.
 
 use crate::face_result::{Meshed, is_unproven};
-use crate::keys::{Key, SharedEdge, sorted};
 use crate::part_job::PartJob;
 use crate::rounds::{Pass, PassResult};
+use crate::shared_edge::{SharedEdge, sorted};
+use chordal_chart::Key;
 use chordal_nurbs::Surface;
 use rayon::prelude::*;
 

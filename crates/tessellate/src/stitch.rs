@@ -1,9 +1,8 @@
 //! Stitch: vertices of faces become shared positions, by identity and never by distance.
 
-use crate::edges::EdgeSamples;
 use crate::face_result::FaceResult;
-use crate::keys::Key;
 use chordal_brep::Part;
+use chordal_chart::{EdgeSamples, Key};
 use chordal_mesh::{Corner, FaceMesh, Origin, PartMesh};
 
 const UNSET: u32 = u32::MAX;

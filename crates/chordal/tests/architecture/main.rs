@@ -109,18 +109,19 @@ fn crates_with_their_tests_are_in_no_circle() {
     assert_eq!(found, known, "{}", graph.cycles().join("\n"));
 }
 
-/// Lines of code of the default mesher: a stranger must be able to read it in a few days. What grows past this belongs
-/// into a crate of its own. Comments, blank lines and tests do not count, so that none is left out for the limit.
+/// Lines of the default mesher: a reader must be able to read it in a few days. What grows past this belongs in a crate of
+/// its own, as `chart` is. Counted as `wc -l` counts, with comments and blank lines, but without the tests at the ends of
+/// the files.
 const MOST_LINES_OF_THE_MESHER: usize = 8_000;
 
 #[test]
 fn the_default_mesher_stays_small() {
     let lines = lines_below(&workspace().join("crates/tessellate/src"));
     assert!(lines > 1_000, "the sources of the mesher are not found");
-    assert!(lines < MOST_LINES_OF_THE_MESHER, "crates/tessellate/src has {lines} lines of code");
+    assert!(lines < MOST_LINES_OF_THE_MESHER, "crates/tessellate/src has {lines} lines");
 }
 
-/// Lines of code of all Rust files in a folder and below it, without the tests at their ends.
+/// Lines of all Rust files in a folder and below it, without the tests at their ends.
 fn lines_below(folder: &Path) -> usize {
     let entries = std::fs::read_dir(folder).expect("the folder can be read").flatten();
     let lines = |path: PathBuf| {
@@ -130,8 +131,7 @@ fn lines_below(folder: &Path) -> usize {
         let is_rust = path.extension().is_some_and(|e| e == "rs");
         let count = || {
             let text = std::fs::read_to_string(&path).expect("the file can be read");
-            let is_code = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with("//");
-            text.lines().take_while(|line| *line != "#[cfg(test)]").filter(is_code).count()
+            text.lines().take_while(|line| *line != "#[cfg(test)]").count()
         };
         if is_rust { count() } else { 0 }
     };

@@ -2,11 +2,12 @@
 
 use super::{FaceMesh, Shape};
 use crate::face_result::{FaceResult, Proof};
-use crate::keys::{Key, Segment, SharedEdge, is_shareable, sorted};
 use crate::limits::{Bound, Limits};
 use crate::metric::Sizing;
 use crate::quads::pairs;
+use crate::shared_edge::{SharedEdge, is_shareable, sorted};
 use crate::triangulate::NONE;
+use chordal_chart::{Key, Segment};
 use chordal_nurbs::{DVec2, Surface, UvBox};
 
 /// c of the lower bound where the Gaussian curvature is positive: 2/(3√3), from the largest triangle in a
@@ -47,7 +48,7 @@ impl FaceMesh<'_, '_> {
         let mut keys: Vec<Key> = (0..self.mesh.points.len() as u32).map(|v| self.key(v)).collect();
         let mut private = self.chart.private.clone();
         private.extend_from_slice(&self.vertices.xyz[self.chart.points.len()..]);
-        let reversed = self.context.face.normal_reversed() != self.chart.reversed;
+        let reversed = self.face().normal_reversed() != self.chart.reversed;
         let keep = |t: &&[u32; 3]| {
             let [a, b, c] = t.map(|v| keys[v as usize]);
             a != b && b != c && c != a
@@ -65,7 +66,7 @@ impl FaceMesh<'_, '_> {
         let mut boundary_error = 0.0f64;
         for point in &self.chart.points {
             if let Segment::Edge { edge, chord } = point.segment {
-                boundary_error = boundary_error.max(self.context.edges[edge as usize].sag[chord as usize]);
+                boundary_error = boundary_error.max(self.edge_samples(edge).sag[chord as usize]);
             }
         }
         let proven = bound == Bound::Proven && proof.error.is_finite();
@@ -100,16 +101,16 @@ impl FaceMesh<'_, '_> {
         for (i, point) in self.chart.points.iter().enumerate() {
             gap = gap.max(self.position(point.key).distance(self.vertices.xyz[i]));
             let Segment::Edge { edge, chord } = point.segment else { continue };
-            let samples = &self.context.edges[edge as usize];
-            let Some(curve) = self.context.part.edges[edge as usize].curve.as_deref() else { continue };
-            let exact = matches!(self.context.surface.surface, Surface::Plane { .. })
+            let samples = self.edge_samples(edge);
+            let Some(curve) = self.part().edges[edge as usize].curve.as_deref() else { continue };
+            let exact = matches!(self.surface().surface, Surface::Plane { .. })
                 && matches!(curve, chordal_nurbs::Curve::Line { .. });
             if !exact {
                 let p = curve.point(0.5 * (samples.t[chord as usize] + samples.t[chord as usize + 1]));
                 let next = self.next_on_boundary(i);
                 let middle = point.uv.midpoint(self.chart.points[next].uv);
-                let uv = self.context.surface.descend(p, middle);
-                gap = gap.max(self.context.surface.point(uv).distance(p));
+                let uv = self.surface().descend(p, middle);
+                gap = gap.max(self.surface().point(uv).distance(p));
             }
         }
         gap
@@ -141,7 +142,7 @@ impl FaceMesh<'_, '_> {
                 };
                 let strips: f64 = (0..STRIP_SAMPLES)
                     .map(|k| {
-                        let jet = self.context.surface.jet(start + d * (k as f64 + 0.5));
+                        let jet = self.surface().jet(start + d * (k as f64 + 0.5));
                         Sizing::new(&jet, &limits).map_or(0.0, |s| s.metric.length(d))
                     })
                     .sum();
@@ -153,7 +154,7 @@ impl FaceMesh<'_, '_> {
                 .iter()
                 .map(|t| {
                     let [a, b, c] = t.map(|v| self.mesh.points[v as usize]);
-                    let jet = self.context.surface.jet((a + b + c) / 3.0);
+                    let jet = self.surface().jet((a + b + c) / 3.0);
                     let area = 0.5 * (b - a).perp_dot(c - a).abs();
                     Sizing::new(&jet, &limits).map_or(0.0, |s| {
                         let constant = if s.gauss > 0.0 { ELLIPTIC } else { HYPERBOLIC };

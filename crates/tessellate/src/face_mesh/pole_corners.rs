@@ -2,8 +2,8 @@
 //! from its own side and needs its own parameters and normal there.
 
 use super::FaceMesh;
-use crate::keys::Key;
-use crate::triangulate::orient;
+use chordal_chart::Key;
+use chordal_nurbs::orient;
 use chordal_nurbs::{DVec2, DVec3};
 
 /// Corners at poles are taken this share of their triangle off the pole. Bounds of cones call places up to
@@ -15,7 +15,7 @@ impl FaceMesh<'_, '_> {
     pub(crate) fn turning_normals(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         let mut normals = triangle.map(|v| self.vertices.normals[v as usize]);
         if let Some((i, uv)) = self.pole_corner(triangle) {
-            normals[i] = self.context.surface.normal(uv);
+            normals[i] = self.surface().normal(uv);
         }
         normals
     }
@@ -25,7 +25,7 @@ impl FaceMesh<'_, '_> {
     fn pole_corner(&self, triangle: [u32; 3]) -> Option<(usize, DVec2)> {
         let i = (0..3).find(|&i| self.vertices.at_pole[triangle[i] as usize])?;
         let corner = triangle[i] as usize;
-        let pole = self.context.surface.pole_at(self.vertices.xyz[corner], self.context.resolution)?;
+        let pole = self.surface().pole_at(self.vertices.xyz[corner], self.context.trimmed.resolution)?;
         let along = 1 - pole.axis;
         let [a, b] = [1, 2].map(|k| self.mesh.points[triangle[(i + k) % 3] as usize]);
         let own = self.mesh.points[corner];
@@ -53,8 +53,8 @@ impl FaceMesh<'_, '_> {
             triangle[i] = self.mesh.points.len() as u32;
             keys.push(keys[pole_corner]);
             self.mesh.points.push(uv);
-            self.vertices.normals.push(self.context.surface.normal(uv));
-            gap = gap.max(self.context.surface.point(uv).distance(self.position(keys[pole_corner])));
+            self.vertices.normals.push(self.surface().normal(uv));
+            gap = gap.max(self.surface().point(uv).distance(self.position(keys[pole_corner])));
         }
         gap
     }

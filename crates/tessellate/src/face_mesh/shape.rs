@@ -1,10 +1,10 @@
 //! How curved a face is: whether its boundary suffices, strips suffice, or points are needed inside.
 
-use crate::chart::FaceContext;
+use crate::face_context::FaceContext;
 use crate::limits::Limits;
 use crate::metric::Sizing;
 use crate::triangulate::sweep;
-use crate::unroll::Chart;
+use chordal_chart::Chart;
 use chordal_nurbs::{DVec2, Surface, UvBox};
 
 /// How the interior is filled.
@@ -23,7 +23,7 @@ pub(crate) fn shape(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBo
     if limits.length.is_finite() {
         return Shape::Doubly;
     }
-    match context.surface.surface {
+    match context.trimmed.surface.surface {
         Surface::Plane { .. } => Shape::Flat,
         Surface::Cylinder { .. } | Surface::Cone { .. } | Surface::Extrusion { .. } => {
             Shape::Singly { axis: 0 }
@@ -61,7 +61,7 @@ fn chords_across(context: &FaceContext<'_, '_>, limits: &Limits, uv_box: UvBox) 
             for axis in 0..2 {
                 let (a, b) = if axis == 0 { (j, i) } else { (i, j) };
                 let at = DVec2::new((a as f64 + 0.5) / SAMPLES as f64, (b as f64 + 0.5) / SAMPLES as f64);
-                let jet = context.surface.jet(uv_box.min + uv_box.size() * at);
+                let jet = context.trimmed.surface.jet(uv_box.min + uv_box.size() * at);
                 let Some(s) = Sizing::new(&jet, limits) else { continue };
                 let mut d = DVec2::ZERO;
                 d[axis] = uv_box.size()[axis] / SAMPLES as f64;
@@ -92,7 +92,7 @@ pub(crate) fn sweep_axis(
 ) -> usize {
     match shape {
         Shape::Singly { axis } => axis,
-        Shape::Doubly if !context.surface.is_elementary() => {
+        Shape::Doubly if !context.trimmed.surface.is_elementary() => {
             let [u, v] = chords_across(context, limits, uv_box);
             usize::from(v > LONG * u.max(1.0))
         }

@@ -69,9 +69,9 @@ impl FaceMesh<'_, '_> {
 
     /// Adds the geometry of one vertex.
     pub(super) fn measure(&mut self, p_uv: DVec2) {
-        let surface = self.context.surface;
+        let surface = self.surface();
         let jet = self.foreseen.jet(surface, p_uv);
-        let at_pole = surface.pole_at(jet.p, self.context.resolution).is_some();
+        let at_pole = surface.pole_at(jet.p, self.context.trimmed.resolution).is_some();
         let sizing = if at_pole { None } else { Sizing::new(&jet, self.limits) };
         let metric = match sizing {
             Some(sizing) => self.metric_of(&jet, sizing),

@@ -15,9 +15,11 @@ use super::mend::clearly_longest;
 use super::sampled::sampled_bound;
 use crate::effort::Remedy;
 use crate::face_mesh::FaceMesh;
-use crate::keys::{Key, Segment, sorted};
 use crate::limits::{TURN_LENGTH, turns_too_far};
-use crate::triangulate::{NONE, orient};
+use crate::shared_edge::sorted;
+use crate::triangulate::NONE;
+use chordal_chart::{Key, Segment};
+use chordal_nurbs::orient;
 use chordal_nurbs::{DVec3, Facet, FacetBound, facet_bound};
 
 /// Facets lower than this share of the tolerance may face any way: they can do no harm.

@@ -2,9 +2,9 @@
 
 use super::Prover;
 use crate::face_mesh::FaceMesh;
-use crate::keys::Segment;
 use crate::metric::Metric;
 use crate::triangulate::{Location, NONE};
+use chordal_chart::Segment;
 use chordal_nurbs::DVec2;
 
 /// A flip is tried for facets whose error is at most this many tolerances; facets further off need points.

@@ -1,7 +1,7 @@
 //! Chords of edges that a face asks to be made finer.
 
 use crate::effort::Setback;
-use crate::keys::Segment;
+use chordal_chart::Segment;
 
 /// Chords by edge and index.
 #[derive(Debug, Default)]

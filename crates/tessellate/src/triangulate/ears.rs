@@ -16,8 +16,8 @@
 //!
 //! Ears that are convex and empty go first; where there is none, the one that is least wrong.
 
-use super::orient;
 use chordal_nurbs::DVec2;
+use chordal_nurbs::orient;
 
 /// Polygons larger than this are not worth the quadratic time.
 const MAX_POINTS: usize = 4000;

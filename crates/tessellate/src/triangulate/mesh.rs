@@ -4,9 +4,9 @@
 //! edge, measured in the mean metric of its four vertices, must not sum to more than π. In a varying metric
 //! no theorem guarantees an end, so the number of flips per call is bounded.
 
-use super::orient;
 use crate::metric::Metric;
 use chordal_nurbs::DVec2;
+use chordal_nurbs::orient;
 use rustc_hash::FxHashMap;
 
 /// No neighbour: the edge is on the boundary.

@@ -19,8 +19,8 @@
 //! Ties in x are broken by y, then by index: an infinitesimal shear, so vertical edges need no case of their
 //! own. Not guaranteed: loops that cross are noticed where they spoil a mountain, not everywhere.
 
-use super::orient;
 use chordal_nurbs::DVec2;
+use chordal_nurbs::orient;
 
 /// Why a polygon could not be triangulated; the vertices near the place where two chains cross.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

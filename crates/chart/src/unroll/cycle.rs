@@ -14,8 +14,8 @@
 use super::cuts::{Cuts, Hop, Side, hold_beside};
 use super::winding::part_of;
 use super::{Unroll, area, shifted};
-use crate::chart::OpenLoop;
 use crate::keys::{ChartPoint, Segment};
+use crate::trimmed_face::OpenLoop;
 use chordal_nurbs::DVec2;
 
 impl Unroll<'_, '_> {

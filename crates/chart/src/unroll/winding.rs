@@ -5,8 +5,8 @@
 
 use super::cuts::{Cuts, Hop, Side, Stop, hold_beside, whole_turns};
 use super::{Unroll, along_axis, mean, shifted};
-use crate::chart::OpenLoop;
 use crate::keys::{ChartPoint, Key, Segment};
+use crate::trimmed_face::OpenLoop;
 use chordal_brep::MeshIssue;
 use chordal_nurbs::DVec2;
 

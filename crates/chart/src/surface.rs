@@ -6,8 +6,11 @@ use std::sync::OnceLock;
 /// The surface of one face, with what the stages need often.
 #[derive(Debug)]
 pub struct FaceSurface<'a> {
+    /// The surface itself.
     pub surface: &'a Surface,
+    /// The periods of u and v, where the surface is closed.
     pub periods: [Option<f64>; 2],
+    /// Sides of the domain that are one point of space.
     pub poles: Vec<Pole>,
     /// Points nearer together than this are one point.
     pub resolution: f64,
@@ -21,11 +24,14 @@ pub struct FaceSurface<'a> {
 /// point may start from.
 #[derive(Clone, Copy, Debug)]
 pub struct Near {
+    /// The parameters.
     pub uv: DVec2,
+    /// The distance.
     pub distance: f64,
 }
 
 impl Near {
+    /// A point of the surface itself.
     pub fn on_surface(uv: DVec2) -> Self {
         Self { uv, distance: 0.0 }
     }
@@ -48,6 +54,7 @@ impl<'a> FaceSurface<'a> {
         }
     }
 
+    /// The point of space at this place.
     pub fn point(&self, p_uv: DVec2) -> DVec3 {
         self.wrap.point(self.surface, p_uv)
     }
@@ -57,6 +64,7 @@ impl<'a> FaceSurface<'a> {
         self.wrap.apply(p_uv)
     }
 
+    /// Point and derivatives at this place.
     pub fn jet(&self, p_uv: DVec2) -> SurfaceJet {
         self.wrap.jet(self.surface, p_uv)
     }

@@ -40,7 +40,7 @@ const SPREAD_QUANTUM: f64 = 1.0 / (1u64 << 24) as f64;
 
 /// A place within a range of this length, rounded so that another rounding of the measured rate gives the
 /// same place.
-pub(crate) fn settled(uneven: f64, even: f64, range: f64) -> f64 {
+pub fn settled(uneven: f64, even: f64, range: f64) -> f64 {
     let quantum = range * SPREAD_QUANTUM;
     if quantum == 0.0 { uneven } else { even + ((uneven - even) / quantum).round() * quantum }
 }

@@ -12,11 +12,10 @@
 //!
 //! Chords that touch along a line do not cross, but leave no area between them ([`shut_corners`]).
 
-use crate::chart::FaceContext;
 use crate::keys::Segment;
-use crate::triangulate::orient;
+use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
-use chordal_nurbs::{DVec2, DVec3};
+use chordal_nurbs::{DVec2, DVec3, orient};
 
 /// The curve may bulge more beside its middle.
 const BULGE_MARGIN: f64 = 2.0;
@@ -42,17 +41,18 @@ struct Side {
 }
 
 /// The chords to split so that loops of the chart may cease to cross; empty where they cross in truth. `culprits` are chart
-/// points near a place where a triangulation failed, for loops that only touch.
-pub(crate) fn coarse_chords(
-    context: &FaceContext<'_, '_>,
+/// points near a place where a triangulation failed, for loops that only touch. The search ends early where `is_out_of_time`.
+pub fn coarse_chords(
+    context: &TrimmedFace<'_, '_>,
     chart: &Chart,
     culprits: &[u32],
+    is_out_of_time: &dyn Fn() -> bool,
 ) -> Vec<(u32, u32)> {
     let mut coarse = Vec::new();
     let mut crossings = 0;
     if chart.points.len() <= MAX_POINTS {
         let sides = sides(context, chart);
-        for (i, j) in crossing_pairs(context, &sides) {
+        for (i, j) in crossing_pairs(&sides, is_out_of_time) {
             crossings += 1;
             for (side, other) in [(&sides[i], &sides[j]), (&sides[j], &sides[i])] {
                 let Segment::Edge { edge, chord } = side.segment else { continue };
@@ -78,7 +78,7 @@ pub(crate) fn coarse_chords(
 ///     __--b     Two curves leave p in one direction. Chords of equal direction are the longer the flatter their curves,
 ///   p==a        and the flatter curve lies nearer to the tangent: halving the longer chord opens the corner.
 /// ```
-pub(crate) fn shut_corners(context: &FaceContext<'_, '_>, chart: &Chart) -> Vec<(u32, u32)> {
+pub fn shut_corners(context: &TrimmedFace<'_, '_>, chart: &Chart) -> Vec<(u32, u32)> {
     let mut coarse = Vec::new();
     for &(start, end) in &chart.loops {
         let (start, end) = (start as usize, end as usize);
@@ -111,7 +111,7 @@ fn is_shut([a, v, b]: [DVec2; 3]) -> bool {
 }
 
 /// The curved chords that meet at these points.
-fn beside(context: &FaceContext<'_, '_>, chart: &Chart, culprits: &[u32]) -> Vec<(u32, u32)> {
+fn beside(context: &TrimmedFace<'_, '_>, chart: &Chart, culprits: &[u32]) -> Vec<(u32, u32)> {
     let mut chords = Vec::new();
     for &v in culprits {
         let Some(&(start, end)) = chart.loops.iter().find(|&&(s, e)| (s..e).contains(&v)) else { continue };
@@ -128,7 +128,7 @@ fn beside(context: &FaceContext<'_, '_>, chart: &Chart, culprits: &[u32]) -> Vec
     chords
 }
 
-fn sides(context: &FaceContext<'_, '_>, chart: &Chart) -> Vec<Side> {
+fn sides(context: &TrimmedFace<'_, '_>, chart: &Chart) -> Vec<Side> {
     let mut sides = Vec::with_capacity(chart.points.len());
     for &(start, end) in &chart.loops {
         let (start, end) = (start as usize, end as usize);
@@ -137,7 +137,7 @@ fn sides(context: &FaceContext<'_, '_>, chart: &Chart) -> Vec<Side> {
     sides
 }
 
-fn side(context: &FaceContext<'_, '_>, chart: &Chart, i: usize, next: usize) -> Side {
+fn side(context: &TrimmedFace<'_, '_>, chart: &Chart, i: usize, next: usize) -> Side {
     let uv = [chart.points[i].uv, chart.points[next].uv];
     let xyz = uv.map(|uv| context.surface.point(uv));
     let segment = chart.points[i].segment;
@@ -169,7 +169,7 @@ fn distance_to(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
 }
 
 /// Sides that cross between their ends, found along x.
-fn crossing_pairs(context: &FaceContext<'_, '_>, sides: &[Side]) -> Vec<(usize, usize)> {
+fn crossing_pairs(sides: &[Side], is_out_of_time: &dyn Fn() -> bool) -> Vec<(usize, usize)> {
     let low = |i: usize| sides[i].uv[0].min(sides[i].uv[1]);
     let high = |i: usize| sides[i].uv[0].max(sides[i].uv[1]);
     let mut order: Vec<usize> = (0..sides.len()).collect();
@@ -177,7 +177,7 @@ fn crossing_pairs(context: &FaceContext<'_, '_>, sides: &[Side]) -> Vec<(usize, 
     let mut pairs = Vec::new();
     for (k, &i) in order.iter().enumerate() {
         // What is found so far is enough to go on with.
-        if pairs.len() > MOST_PAIRS || k % SIDES_PER_LOOK == 0 && context.is_out_of_time() {
+        if pairs.len() > MOST_PAIRS || k % SIDES_PER_LOOK == 0 && is_out_of_time() {
             break;
         }
         let (low_i, high_i) = (low(i), high(i));

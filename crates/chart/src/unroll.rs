@@ -16,11 +16,10 @@ mod cuts;
 mod cycle;
 mod winding;
 
-use crate::chart::{FaceContext, OpenLoop};
 use crate::keys::{ChartPoint, Key, Segment};
-use crate::limits::Limits;
-use crate::metric::Sizing;
+use crate::seams::Seams;
 use crate::snap::{Grid, settled};
+use crate::trimmed_face::{OpenLoop, TrimmedFace};
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{DVec2, DVec3, UvBox};
 use cuts::{Side, hold_beside};
@@ -30,6 +29,7 @@ use winding::seam_beside;
 /// The face as polygons: outer loops counter-clockwise, holes clockwise.
 #[derive(Clone, Debug, Default)]
 pub struct Chart {
+    /// The corners of all polygons.
     pub points: Vec<ChartPoint>,
     /// Runs of `points`.
     pub loops: Vec<(u32, u32)>,
@@ -50,19 +50,13 @@ const SAME_VERTEX: f64 = 1e-2;
 const SEAM_DEPTH: usize = 12;
 
 impl Chart {
-    /// Unrolls the face; seams get chords of this length in the metric. `creased`: cut along its surface's
-    /// creases.
+    /// Unrolls the face; cuts through it are sampled as `seams` says. `creased`: cut along its surface's creases.
     ///
     /// # Errors
     /// Where the loops bound no region.
-    pub(crate) fn new(
-        context: &FaceContext<'_, '_>,
-        limits: &Limits,
-        seam_chord: f64,
-        creased: bool,
-    ) -> Result<Self, MeshIssue> {
+    pub fn new(context: &TrimmedFace<'_, '_>, seams: &Seams<'_>, creased: bool) -> Result<Self, MeshIssue> {
         let (loops, lone) = context.loops()?;
-        let mut unroll = Unroll { context, limits, seam_chord, lone, private: Vec::new(), reversed: false };
+        let mut unroll = Unroll { context, seams, lone, private: Vec::new(), reversed: false };
         let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
         plain.retain(|l| encloses_area(l, context.surface.periods));
         // Loops that enclose nothing bound nothing: least of all the whole surface.
@@ -98,9 +92,8 @@ impl Chart {
 }
 
 pub(crate) struct Unroll<'a, 's> {
-    pub context: &'a FaceContext<'a, 's>,
-    limits: &'a Limits,
-    seam_chord: f64,
+    pub context: &'a TrimmedFace<'a, 's>,
+    seams: &'a Seams<'a>,
     lone: Vec<u32>,
     private: Vec<DVec3>,
     reversed: bool,
@@ -177,11 +170,11 @@ impl Unroll<'_, '_> {
         let mut sum = vec![0.0];
         for k in 0..probes {
             let jet = self.context.surface.jet(from + d * (k as f64 + 0.5));
-            let step = Sizing::new(&jet, self.limits).map_or(0.0, |s| s.metric.length(d));
+            let step = self.seams.metric.length(&jet, d);
             sum.push(sum[k] + step);
         }
         let total = sum[probes];
-        let count = (total / self.seam_chord).ceil().clamp(1.0, 1e5) as usize;
+        let count = (total / self.seams.chord).ceil().clamp(1.0, 1e5) as usize;
         let mut at = 0;
         let mut points = vec![from];
         for k in 1..=count {
@@ -209,7 +202,7 @@ impl Unroll<'_, '_> {
             let along = (x.dot(chord) / chord.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             (x - chord * along).length()
         };
-        let allowed = self.limits.tolerance * self.seam_chord * self.seam_chord;
+        let allowed = self.seams.tolerance * self.seams.chord * self.seams.chord;
         if depth > 0 && (1..8).any(|i| off(i) > allowed) {
             let middle = from.midpoint(to);
             self.halve_until_near(from, middle, depth - 1, points);
@@ -263,8 +256,8 @@ impl Unroll<'_, '_> {
         let inward = if domain.is_finite() { domain.center()[across] } else { inside[across] };
         middle[across] = 0.5 * (middle[across] + inward);
         let jet = self.context.surface.jet(middle);
-        let rate = Sizing::new(&jet, self.limits).map_or(0.0, |s| s.metric.length(to - from));
-        (rate / self.seam_chord).ceil().clamp(2.0, 256.0) as usize
+        let rate = self.seams.metric.length(&jet, to - from);
+        (rate / self.seams.chord).ceil().clamp(2.0, 256.0) as usize
     }
 
     /// True for a surface without any boundary of its own whose loops are all holes, and for a face without

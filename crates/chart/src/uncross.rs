@@ -25,23 +25,29 @@ mod hits;
 mod rebuild;
 mod split;
 
-use crate::chart::FaceContext;
+use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
 use chordal_brep::{EdgeId, FaceId, Loop, Part, VertexId};
 use chordal_nurbs::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-pub(crate) use hits::loops_cross;
+pub use hits::loops_cross;
 
 /// A face whose loops cross, with its chart.
-pub(crate) struct Crossed<'a, 's> {
+#[derive(Debug)]
+pub struct Crossed<'a, 's> {
+    /// Its index in the part.
     pub face: usize,
-    pub context: &'a FaceContext<'a, 's>,
+    /// The face.
+    pub context: &'a TrimmedFace<'a, 's>,
+    /// Its chart, not cut along creases.
     pub chart: Chart,
 }
 
 /// A part with loops that do not cross.
-pub(crate) struct Uncrossed {
+#[derive(Debug)]
+pub struct Uncrossed {
+    /// The part.
     pub part: Part,
     /// Per face with new loops: how many crossings it had.
     pub faces: Vec<(usize, usize)>,
@@ -82,7 +88,7 @@ struct Meeting {
 
 /// The part with the loops of these faces made anew; `None` where nothing was to be done. Points nearer together than
 /// `resolution` are one, and crossings of curves that stay further apart than `tolerance` are none.
-pub(crate) fn uncrossed(
+pub fn uncrossed(
     part: &Part,
     crossed: &[Crossed<'_, '_>],
     resolution: f64,

@@ -17,8 +17,11 @@ pub enum Key {
 /// What connects one chart point to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Segment {
+    /// A chord of an edge of the part.
     Edge {
+        /// The edge.
         edge: u32,
+        /// The chord, counted from the start of the edge.
         chord: u32,
     },
     /// A cut through the surface that only this face has; both sides have the same vertices.
@@ -30,25 +33,10 @@ pub enum Segment {
 /// A corner of a polygon in the chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartPoint {
+    /// Its place in the chart.
     pub uv: DVec2,
+    /// The vertex of the mesh that it is.
     pub key: Key,
     /// The segment to the next point.
     pub segment: Segment,
-}
-
-/// An edge that other faces may have too, by the keys of its ends in order.
-pub(crate) type SharedEdge = [Key; 2];
-
-pub(crate) fn sorted([a, b]: SharedEdge) -> SharedEdge {
-    [a.min(b), a.max(b)]
-}
-
-/// True for an edge, given by its ends, that another face may have as an inner edge: neither end belongs to
-/// one face only, and the edge is no chord of an edge of the part.
-pub(crate) fn is_shareable(pair: SharedEdge) -> bool {
-    match pair {
-        [Key::Private(_), _] | [_, Key::Private(_)] => false,
-        [Key::Edge(e, i), Key::Edge(f, j)] if e == f => i.abs_diff(j) > 1,
-        [a, b] => a != b,
-    }
 }

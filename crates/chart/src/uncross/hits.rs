@@ -1,12 +1,11 @@
 //! Where the loops of a face meet: crossings of chords, carried over to the exact curves, and vertices on other edges.
 
 use super::{Meeting, Stop};
-use crate::chart::FaceContext;
 use crate::keys::{Key, Segment};
-use crate::triangulate::orient;
+use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
 use chordal_brep::VertexId;
-use chordal_nurbs::{CurveInverter, DVec2, Range};
+use chordal_nurbs::{CurveInverter, DVec2, Range, orient};
 
 /// A crossing of chords is followed to the curves by this many cuts at most: each leaves a chord of half the length or far
 /// less.
@@ -66,7 +65,7 @@ fn cross([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
 }
 
 /// True where loops of the chart cross: between corners, in a corner of one of them, or in a corner of both.
-pub(crate) fn loops_cross(chart: &Chart) -> bool {
+pub fn loops_cross(chart: &Chart) -> bool {
     let mut found = false;
     near_pairs(&sides(chart), |s, t| {
         found = cross(s.ends, t.ends)
@@ -103,7 +102,7 @@ fn corners_cross(s: &Side, t: &Side) -> bool {
 
 /// All places where edges of the face meet other than in their vertices.
 pub(super) fn meetings(
-    context: &FaceContext<'_, '_>,
+    context: &TrimmedFace<'_, '_>,
     chart: &Chart,
     resolution: f64,
     tolerance: f64,
@@ -131,7 +130,7 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn of(context: &FaceContext<'_, '_>, side: &Side) -> Option<Self> {
+    fn of(context: &TrimmedFace<'_, '_>, side: &Side) -> Option<Self> {
         let Segment::Edge { edge, chord } = side.segment else { return None };
         let samples = &context.edges[edge as usize];
         let (k, curve) = (chord as usize, context.part.edges[edge as usize].curve.as_deref()?);
@@ -143,7 +142,7 @@ impl Stretch {
     }
 
     /// The stretch cut in two at a share of it.
-    fn cut(&self, context: &FaceContext<'_, '_>, share: f64) -> Option<[Self; 2]> {
+    fn cut(&self, context: &TrimmedFace<'_, '_>, share: f64) -> Option<[Self; 2]> {
         let t = self.t[0] + share * (self.t[1] - self.t[0]);
         let curve = context.part.edges[self.edge as usize].curve.as_deref()?;
         let uv = context.surface.descend(curve.point(t), self.uv[0].lerp(self.uv[1], share));
@@ -155,7 +154,7 @@ impl Stretch {
 }
 
 /// Follows two chords that cross to where their curves do.
-fn crossing(context: &FaceContext<'_, '_>, pair: [&Side; 2], tolerance: f64) -> Option<Meeting> {
+fn crossing(context: &TrimmedFace<'_, '_>, pair: [&Side; 2], tolerance: f64) -> Option<Meeting> {
     let mut at = [Stretch::of(context, pair[0])?, Stretch::of(context, pair[1])?];
     let mut place = [0.0; 2];
     for _ in 0..STEPS {
@@ -187,7 +186,7 @@ fn shares([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<[f64; 2]> {
 
 /// The first corner of a side where it lies on another edge.
 fn touches(
-    context: &FaceContext<'_, '_>,
+    context: &TrimmedFace<'_, '_>,
     chart: &Chart,
     own: &Side,
     other: &Side,

@@ -5,9 +5,8 @@
 //! by whole periods; where a loop passes through a pole, both sides' parameters are kept as two chart points of one
 //! vertex.
 
-use crate::clock::Deadline;
-use crate::edges::EdgeSamples;
-use crate::keys::{ChartPoint, Key, Segment, SharedEdge};
+use crate::edge_samples::EdgeSamples;
+use crate::keys::{ChartPoint, Key, Segment};
 use crate::surface::{FaceSurface, Near};
 use chordal_brep::{Coedge, Face, Loop, MeshIssue, Part, Pcurve};
 use chordal_nurbs::{DVec2, DVec3};
@@ -22,17 +21,17 @@ pub(crate) struct OpenLoop {
     pub outer: bool,
 }
 
-/// What the stages of one face share.
+/// A face with its surface and its sampled edges.
 #[derive(Debug)]
-pub(crate) struct FaceContext<'a, 's> {
+pub struct TrimmedFace<'a, 's> {
+    /// The part that the face belongs to.
     pub part: &'a Part,
+    /// The face itself.
     pub face: &'a Face,
+    /// Its surface.
     pub surface: &'a FaceSurface<'s>,
+    /// The samples of all edges of the part, by index.
     pub edges: &'a [EdgeSamples],
-    /// Inner edges that it must do without: another face has them.
-    pub doubled: &'a [SharedEdge],
-    /// When the face is given up.
-    pub deadline: Option<Deadline>,
     /// Loops of the face meet in vertices: each is one place in the chart.
     pub touching: bool,
     /// Points nearer together than this are the same point.
@@ -57,17 +56,12 @@ impl Run {
     }
 }
 
-impl FaceContext<'_, '_> {
-    /// True where the time of the face is over.
-    pub fn is_out_of_time(&self) -> bool {
-        self.deadline.is_some_and(Deadline::is_over)
-    }
-
+impl TrimmedFace<'_, '_> {
     /// All loops of the face with the interior on their left in the chart, and the vertices of vertex loops.
     ///
     /// # Errors
     /// Where a loop cannot be followed.
-    pub fn loops(&self) -> Result<(Vec<OpenLoop>, Vec<u32>), MeshIssue> {
+    pub(crate) fn loops(&self) -> Result<(Vec<OpenLoop>, Vec<u32>), MeshIssue> {
         let mut loops = Vec::new();
         let mut lone = Vec::new();
         for a_loop in &self.face.loops {
@@ -103,7 +97,7 @@ impl FaceContext<'_, '_> {
     }
 
     /// True for a face with a loop that is more than a point.
-    pub fn is_trimmed(&self) -> bool {
+    pub(crate) fn is_trimmed(&self) -> bool {
         self.face.loops.iter().any(|boundary| !matches!(boundary, Loop::Vertex(_)))
     }
 

@@ -26,8 +26,8 @@
 //! Not guaranteed: where loops cross each other, there may be no such chain.
 
 use super::{area, mean};
-use crate::chart::OpenLoop;
 use crate::keys::ChartPoint;
+use crate::trimmed_face::OpenLoop;
 use chordal_nurbs::DVec2;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

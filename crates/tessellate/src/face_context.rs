@@ -1,0 +1,23 @@
+//! What the stages of one face share.
+
+use crate::clock::Deadline;
+use crate::shared_edge::SharedEdge;
+use chordal_chart::TrimmedFace;
+
+/// A face with what its mesh must keep to.
+#[derive(Debug)]
+pub(crate) struct FaceContext<'a, 's> {
+    /// The face with its surface and its sampled edges.
+    pub trimmed: TrimmedFace<'a, 's>,
+    /// Inner edges that it must do without: another face has them.
+    pub doubled: &'a [SharedEdge],
+    /// When the face is given up.
+    pub deadline: Option<Deadline>,
+}
+
+impl FaceContext<'_, '_> {
+    /// True where the time of the face is over.
+    pub fn is_out_of_time(&self) -> bool {
+        self.deadline.is_some_and(Deadline::is_over)
+    }
+}
