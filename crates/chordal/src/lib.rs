@@ -31,8 +31,8 @@
 //! | `methods` | no | published methods that fill faces and cut edges, by name, and their comparison |
 //! | `levels` | no | coarser levels of sewn meshes (needs a C++ compiler) |
 //!
-//! The crates of the pipeline can be used alone: [`nurbs`], [`brep`], [`read`], [`sew`], [`mod@tessellate`], [`audit`],
-//! [`mesh`], [`write`](mod@write), [`document`].
+//! The crates of the pipeline can be used alone: [`nurbs`], [`brep`], [`read`], [`sew`], [`chart`], [`mod@tessellate`],
+//! [`audit`], [`mesh`], [`write`](mod@write), [`document`].
 #![deny(missing_docs)]
 
 /// The README's example, compiled as a test of the documentation.
