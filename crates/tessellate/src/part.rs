@@ -134,7 +134,7 @@ fn uncrossed_part(job: &PartJob<'_>, edges: &[EdgeSamples], crossed: &[usize]) -
             let trimmed = TrimmedFace {
                 part: job.part,
                 face: &job.part.faces[face],
-                surface: job.surfaces[face].as_ref()?,
+                surface: job.surfaces[face].as_ref().ok()?,
                 edges,
                 touching: job.known.touching.contains(&face),
                 resolution: job.resolution,

@@ -4,7 +4,7 @@ use crate::edge_use::EdgeUse;
 use crate::known_faces::KnownFaces;
 use crate::limits::{Limits, resolution};
 use crate::options::{Cancel, Options};
-use chordal_brep::{Face, FaceGeometry, Loop, MeshIssue, Part, Pcurve};
+use chordal_brep::{Face, FaceGeometry, Issue, Loop, MeshIssue, Part, Pcurve};
 use chordal_chart::FaceSurface;
 use chordal_nurbs::{DVec3, Surface};
 use std::borrow::Cow;
@@ -24,8 +24,8 @@ pub(crate) struct PartJob<'a> {
     pub known: KnownFaces,
     /// Of every face: microseconds that all attempts took.
     pub spent: Vec<AtomicU64>,
-    /// Of every face; none where the reader made none.
-    pub surfaces: Vec<Option<FaceSurface<'a>>>,
+    /// Of every face; the reader's reason where there is none.
+    pub surfaces: Vec<Result<FaceSurface<'a>, &'a Issue>>,
     /// Of every edge: the faces that use it, each with its curve in that face's parameters.
     uses: Vec<Vec<(usize, Option<&'a Pcurve>)>>,
     /// Of every face: how far its vertices lie apart.
@@ -36,7 +36,7 @@ impl<'a> PartJob<'a> {
     /// `exact` holds the surfaces of all faces, from [`exact_surfaces`].
     pub fn new(
         part: &'a Part,
-        exact: &'a [Option<Cow<'a, Surface>>],
+        exact: &'a [ExactSurface<'a>],
         options: &'a Options,
         cancel: &'a Cancel,
     ) -> Self {
@@ -54,7 +54,10 @@ impl<'a> PartJob<'a> {
             resolution,
             known: KnownFaces::default(),
             spent: part.faces.iter().map(|_| AtomicU64::new(0)).collect(),
-            surfaces: exact.iter().map(|s| s.as_deref().map(|s| FaceSurface::new(s, resolution))).collect(),
+            surfaces: exact
+                .iter()
+                .map(|found| found.as_ref().map(|s| FaceSurface::new(s, resolution)).map_err(|issue| *issue))
+                .collect(),
             uses: uses_of_edges(part),
             reach: part.faces.iter().map(|face| reach(part, face)).collect(),
         }
@@ -75,29 +78,37 @@ impl<'a> PartJob<'a> {
     pub fn edge_uses(&self, edge: usize) -> Vec<EdgeUse<'_, 'a>> {
         let model = &self.part.edges[edge];
         let with_surface = self.uses[edge].iter().filter_map(|&(face, pcurve)| {
-            let surface = self.surfaces[face].as_ref()?;
+            let surface = self.surfaces[face].as_ref().ok()?;
             Some(EdgeUse { surface, pcurve, reach: self.reach[face] }.paced(model, self.limits.tolerance))
         });
         with_surface.collect()
     }
 
-    /// Why a face is not even tried.
-    pub fn unusable(&self, face: usize) -> Option<MeshIssue> {
-        self.part.faces[face].failure().map(|_| MeshIssue::NotRead)
+    /// The surface of a face.
+    ///
+    /// # Errors
+    /// Where the reader made none: the reader's reason.
+    pub fn surface(&self, face: usize) -> Result<&FaceSurface<'a>, MeshIssue> {
+        self.surfaces[face].as_ref().map_err(|issue| MeshIssue::NotRead { issue: Box::new((*issue).clone()) })
     }
 }
 
+/// The surface to mesh on, or why the reader made none.
+pub(crate) type ExactSurface<'a> = Result<Cow<'a, Surface>, &'a Issue>;
+
 /// The surfaces to mesh on: offsets of elementary surfaces are elementary themselves.
-pub(crate) fn exact_surfaces(part: &Part) -> Vec<Option<Cow<'_, Surface>>> {
+pub(crate) fn exact_surfaces(part: &Part) -> Vec<ExactSurface<'_>> {
     part.faces.iter().map(exact_surface).collect()
 }
 
-fn exact_surface(face: &Face) -> Option<Cow<'_, Surface>> {
-    let FaceGeometry::Surface(surface) = &face.geometry else { return None };
-    Some(match surface.as_ref() {
-        Surface::Offset { .. } => Cow::Owned(surface.as_ref().clone().simplified()),
-        other => Cow::Borrowed(other),
-    })
+fn exact_surface(face: &Face) -> ExactSurface<'_> {
+    match &face.geometry {
+        FaceGeometry::Failed(issue) => Err(issue),
+        FaceGeometry::Surface(surface) => Ok(match surface.as_ref() {
+            Surface::Offset { .. } => Cow::Owned(surface.as_ref().clone().simplified()),
+            other => Cow::Borrowed(other),
+        }),
+    }
 }
 
 fn uses_of_edges(part: &Part) -> Vec<Vec<(usize, Option<&Pcurve>)>> {

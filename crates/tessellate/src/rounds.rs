@@ -150,15 +150,13 @@ impl<'j, 'a> Pass<'j, 'a> {
         doubled: &[SharedEdge],
     ) -> Result<Meshed, Vec<(u32, u32)>> {
         let job = self.job;
-        if let Some(issue) = job.unusable(face) {
-            return Ok(Err(issue));
-        }
+        let surface = match job.surface(face) {
+            Ok(surface) => surface,
+            Err(issue) => return Ok(Err(issue)),
+        };
         if job.known.flat.contains(&face) {
             return Ok(Ok(Box::new(FaceResult { bound: "no area", ..FaceResult::default() })));
         }
-        let Some(surface) = job.surfaces[face].as_ref() else {
-            return Ok(Err(MeshIssue::NotRead));
-        };
         if job.cancel.is_cancelled() {
             return Ok(Err(MeshIssue::Cancelled));
         }

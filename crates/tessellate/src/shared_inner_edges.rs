@@ -23,7 +23,7 @@ pub(crate) fn separate(pass: &Pass<'_, '_>, result: &mut PassResult) {
     let job = pass.job;
     let is_flat = |face: u32| {
         let surface = job.surfaces[face as usize].as_ref();
-        surface.is_some_and(|s| matches!(s.surface, Surface::Plane { .. }))
+        surface.is_ok_and(|s| matches!(s.surface, Surface::Plane { .. }))
     };
     let unproven = unproven_faces(job, &result.faces);
     let mut given_up: Vec<(u32, SharedEdge)> = Vec::new();
@@ -70,7 +70,7 @@ fn single_chords<'a>(
 /// Of every face: true where it has no triangles, or no proof although one is asked for.
 pub(crate) fn unproven_faces(job: &PartJob<'_>, faces: &[Meshed]) -> Vec<bool> {
     let is_unproven = |(face, meshed): (usize, &Meshed)| match meshed {
-        Err(_) => job.unusable(face).is_none(),
+        Err(_) => job.surfaces[face].is_ok(),
         Ok(result) => is_unproven(result, &job.limits, job.options.bound),
     };
     faces.iter().enumerate().map(is_unproven).collect()

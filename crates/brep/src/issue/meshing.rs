@@ -1,5 +1,6 @@
 //! What can be found while a face or an edge is meshed.
 
+use super::Issue;
 use super::words::count;
 use crate::Source;
 use chordal_nurbs::NurbsError;
@@ -10,8 +11,11 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum MeshIssue {
-    /// The reader made no surface for the face; the face itself carries the reason.
-    NotRead,
+    /// The reader made no surface for the face; the issue has the code of the reader's.
+    NotRead {
+        /// Why the face has no surface.
+        issue: Box<Issue>,
+    },
     /// The job was cancelled before the face was finished.
     Cancelled,
     /// The time limit of one face was reached.
@@ -101,7 +105,7 @@ impl MeshIssue {
     /// A stable name for programs to match.
     pub fn code(&self) -> &'static str {
         match self {
-            MeshIssue::NotRead => "face-not-read",
+            MeshIssue::NotRead { issue } => issue.kind.code(),
             MeshIssue::Cancelled => "cancelled",
             MeshIssue::OutOfTime { .. } => "out-of-time",
             MeshIssue::TooManyTriangles { .. } => "too-many-triangles",
@@ -135,7 +139,7 @@ impl MeshIssue {
 impl fmt::Display for MeshIssue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            MeshIssue::NotRead => f.write_str("the face could not be read"),
+            MeshIssue::NotRead { issue } => issue.fmt(f),
             MeshIssue::Cancelled => f.write_str("cancelled"),
             MeshIssue::OutOfTime { elements } => {
                 write!(f, "time limit of the face reached at {}", count(*elements, "triangle", "triangles"))

@@ -146,7 +146,9 @@ issues! {
         what: &'static str = "What they are, in the plural.",
     } => "objects-ignored", "{} ignored: {what} are not supported", count(*objects, "object", "objects");
     /// A reference to another file, which is not read.
-    OtherFile => "other-file", "refers to another file, which is not read";
+    OtherFile { name: String = "The name of the file; empty where it is not known." } => "other-file",
+        "refers to {}, which is not read",
+        if name.is_empty() { "another file".to_owned() } else { format!("the file {name:?}") };
     /// Commands and scripts of a file are never run.
     ProgramIgnored { what: &'static str = "What holds them." } => "program-ignored",
         "{what} ignored: programs in a file are never run";
@@ -533,8 +535,6 @@ issues! {
         "the shape belongs to no product; read as a part of its own";
     /// A file without product structure.
     NoProducts => "no-products", "the file has no product structure; its bodies are read directly";
-    /// A sentence without a variant of its own yet. The variant goes when every stage is typed.
-    Other { sentence: String = "The sentence." } => "other", "{sentence}";
 }
 
 impl ReadIssue {
@@ -552,17 +552,5 @@ impl ReadIssue {
 impl From<NurbsError> for ReadIssue {
     fn from(error: NurbsError) -> Self {
         ReadIssue::Spline { error: SplineFault(error) }
-    }
-}
-
-impl From<String> for ReadIssue {
-    fn from(sentence: String) -> Self {
-        ReadIssue::Other { sentence }
-    }
-}
-
-impl From<&str> for ReadIssue {
-    fn from(sentence: &str) -> Self {
-        ReadIssue::Other { sentence: sentence.to_owned() }
     }
 }

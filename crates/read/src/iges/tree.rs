@@ -304,7 +304,7 @@ impl Builder<'_, '_> {
                 let what = format!("a solid of {}", self.doc.word(ix)).into();
                 self.doc.lose(ix, ReadIssue::Unsupported { what })
             }
-            416 => self.doc.lose(ix, ReadIssue::OtherFile),
+            416 => self.doc.lose(ix, ReadIssue::OtherFile { name: String::new() }),
             _ => {}
         }
         Vec::new()

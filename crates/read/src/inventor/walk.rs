@@ -130,9 +130,8 @@ impl Walk<'_> {
                 state.transform = before;
             }
             "WWWInline" | "File" => {
-                let what =
-                    format!("{} is not followed", [node.word("name"), node.kind.as_str()].join(" ").trim());
-                self.context.stage.notes.lose(node.source(), what);
+                let name = node.word("name").to_owned();
+                self.context.stage.notes.lose(node.source(), ReadIssue::OtherFile { name });
             }
             kind if is_separator(kind) => {
                 let mut inner = state.clone();

@@ -330,7 +330,7 @@ impl Reader {
         for (keyword, line, count) in std::mem::take(&mut self.passed) {
             let source = Source { entity: 0, line };
             match keyword.as_str() {
-                "call" => self.notes.lose(source, ReadIssue::OtherFile),
+                "call" => self.notes.lose(source, ReadIssue::OtherFile { name: String::new() }),
                 "csh" => self.notes.warn(source, ReadIssue::ProgramIgnored { what: "csh statements" }),
                 "bsp" | "bzp" | "cdc" | "cdp" | "res" => {
                     self.notes.lose(source, ReadIssue::StatementsIgnored { keyword, statements: count });

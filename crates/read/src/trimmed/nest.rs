@@ -43,7 +43,7 @@ pub(super) fn groups(surface: &Surface, chains: Vec<Chain>, scale: &Scale) -> Re
         let no_area = |c: &Chain| c.role != Role::Hole && area(&c.polygon(scale)).abs() <= NO_AREA;
         let flat: Vec<Chain> = given.into_iter().filter(no_area).collect();
         if flat.is_empty() {
-            return Err("its trims leave nothing of the surface".into());
+            return Err(ReadIssue::NothingTrimmed);
         }
         return Ok(Groups { faces: vec![flat], untangled: None });
     }

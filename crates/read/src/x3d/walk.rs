@@ -120,7 +120,10 @@ impl<'a> Walk<'a> {
                 }
                 levels.first().inspect(|&&level| self.node(level, place));
             }
-            "Inline" => self.context.stage.notes.lose(node.source(), ReadIssue::OtherFile),
+            "Inline" => {
+                let name = node.word("url").to_owned();
+                self.context.stage.notes.lose(node.source(), ReadIssue::OtherFile { name });
+            }
             kind if GROUPS.contains(&kind) => {
                 let moves = matches!(kind, "Transform" | "CADPart" | "EspduTransform");
                 let by = if moves {
@@ -142,7 +145,8 @@ impl<'a> Walk<'a> {
             "NurbsSet" => {}
             _ if self.geometry(ix, place) => {}
             kind if graph.prototypes.get(kind).is_some_and(|p| p.external) => {
-                self.context.stage.notes.lose(node.source(), ReadIssue::OtherFile);
+                let issue = ReadIssue::OtherFile { name: String::new() };
+                self.context.stage.notes.lose(node.source(), issue);
             }
             kind if !kind.is_empty() && !is_silent(kind) => self.context.note(node, ReadIssue::NotRead),
             _ => {}
