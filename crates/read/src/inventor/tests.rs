@@ -191,6 +191,14 @@ fn solids_are_exact_and_polygons_pass_through() {
 }
 
 #[test]
+fn another_file_is_named_by_an_issue() {
+    let model = read("Cube { } WWWInline { name \"wheel.iv\" }");
+    let issue = model.issues.iter().find(|issue| issue.is_error()).expect("an issue");
+    assert_eq!(issue.kind, ReadIssue::OtherFile { name: "wheel.iv".into() }.into());
+    assert_eq!(issue.kind.to_string(), "refers to the file \"wheel.iv\", which is not read");
+}
+
+#[test]
 fn uses_of_uses_end() {
     let mut text = format!("DEF N0 Separator {{ {} {PATCH} }}", coordinates(1.0));
     for i in 1..64 {
