@@ -19,13 +19,15 @@
 //! triangles must fill exactly: to within what the edges lie off the surface, seen in the chart, along the
 //! perimeter, and a share.
 //!
-//! Not checked: faces with a loop through a pole, where a curve does not determine one of the parameters;
-//! loops that wind round both directions at once; curves whose projection does not follow them.
+//! Not checked where the chords alone do not show it: faces with a loop through a pole, where a curve does not
+//! determine one of the parameters; loops that wind round both directions at once; curves whose projection
+//! does not follow them.
 
 use crate::boundary::Boundary;
 use crate::chart::Chart;
 use crate::context::Context;
 use crate::findings::Log;
+use crate::unrolled::is_unrolled;
 use chordal_brep::{AuditIssue, Coedge, Loop};
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, Surface};
 use rustc_hash::FxHashMap;
@@ -55,7 +57,10 @@ pub(crate) fn check_area(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boun
     if bounds.missing > 0 || !bounds.stray.is_empty() || bounds.chords.is_empty() {
         return;
     }
-    let places = if is_flat(chart) { FxHashMap::default() } else { places(chart, bounds) };
+    if is_unrolled(context, chart, bounds) {
+        return;
+    }
+    let places = places(chart, bounds);
     let mut loops = Vec::new();
     for (a_loop, direction) in log.face.loops.iter().zip(&bounds.directions) {
         let Some(forward) = *direction else { continue };
@@ -112,7 +117,7 @@ fn mesh_area(chart: &Chart<'_>) -> f64 {
 
 /// A place in the chart of each position on the boundary.
 fn places(chart: &Chart<'_>, bounds: &Boundary) -> FxHashMap<u32, DVec2> {
-    let ends = bounds.chords.iter().flat_map(|(h, _)| [h.a, h.b]);
+    let ends = bounds.chords.iter().flat_map(|c| [c.half.a, c.half.b]);
     ends.map(|c| &chart.mesh.corners[c as usize]).map(|c| (c.position, c.uv)).collect()
 }
 
@@ -156,13 +161,11 @@ fn follow(
     a_loop: &Loop,
     places: &FxHashMap<u32, DVec2>,
 ) -> Option<Followed> {
-    let Trail { positions, middles, .. } = Trail::of(context, a_loop, !is_flat(chart))?;
+    let Trail { positions, middles } = Trail::of(context, a_loop)?;
     if positions.iter().any(|&p| is_at_pole(chart, context, p)) {
         return None;
     }
-    let first = positions.first()?;
-    // A plane needs no place to start from.
-    let uv = if is_flat(chart) { DVec2::ZERO } else { *places.get(first)? };
+    let uv = *places.get(positions.first()?)?;
     let mut walk = Walk { chart, uv, off: 0.0 };
     let mut corners = Vec::with_capacity(positions.len() + 1);
     corners.push(walk.step(context.mesh.positions[positions[0] as usize])?);
@@ -182,23 +185,18 @@ fn is_at_pole(chart: &Chart<'_>, context: &Context<'_>, position: u32) -> bool {
     chart.poles.iter().any(|pole| pole.point.distance(p) <= near)
 }
 
-fn is_flat(chart: &Chart<'_>) -> bool {
-    matches!(chart.surface, Surface::Plane { .. })
-}
-
 /// The points along a loop.
 #[derive(Default)]
 struct Trail {
     positions: Vec<u32>,
     /// The middle of the exact curve between each position and the next, where it helps to follow a curve.
     middles: Vec<Option<DVec3>>,
-    wants_middles: bool,
 }
 
 impl Trail {
     /// `None` for a loop without points, or with an edge whose samples are not in order.
-    fn of(context: &Context<'_>, a_loop: &Loop, wants_middles: bool) -> Option<Self> {
-        let mut trail = Self { wants_middles, ..Self::default() };
+    fn of(context: &Context<'_>, a_loop: &Loop) -> Option<Self> {
+        let mut trail = Self::default();
         match a_loop {
             Loop::Vertex(_) => return None,
             Loop::Polygon { vertices, .. } => {
@@ -224,7 +222,7 @@ impl Trail {
         if at.len() != line.len() || line.is_empty() {
             return None;
         }
-        let needs_middle = self.wants_middles && !matches!(**curve, Curve::Line { .. });
+        let needs_middle = !matches!(**curve, Curve::Line { .. });
         let chords = line.len() - 1;
         for k in 0..chords {
             let (from, to) = if coedge.forward { (k, k + 1) } else { (chords - k, chords - k - 1) };
@@ -246,10 +244,6 @@ impl Walk<'_, '_> {
     /// The parameters of the point of the surface nearest to `p`, near those of the point before.
     fn step(&mut self, p: DVec3) -> Option<DVec2> {
         let (uv, off) = match self.chart.surface {
-            Surface::Plane { frame } => {
-                let d = p - frame.origin;
-                (DVec2::new(d.dot(frame.x), d.dot(frame.y)), 0.0)
-            }
             Surface::Cylinder { frame, radius } => self.ring(frame, p, |_, z| z, |_| (*radius, 1.0)),
             Surface::Cone { frame, radius, half_angle } => {
                 self.ring(frame, p, |_, z| z, |v| (radius + v * half_angle.tan(), 1.0))

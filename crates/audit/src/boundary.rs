@@ -12,8 +12,8 @@ use chordal_mesh::FaceMesh;
 /// What bounds a face in its chart.
 #[derive(Debug, Default)]
 pub(crate) struct Boundary {
-    /// Chords of the face's loops, each with the bound of its distance from its curve.
-    pub chords: Vec<(Half, f64)>,
+    /// Chords of the face's loops.
+    pub chords: Vec<BoundaryChord>,
     /// Loops that run as the file says, and the other way round.
     pub forward: usize,
     pub backward: usize,
@@ -27,6 +27,16 @@ pub(crate) struct Boundary {
     /// Chords of loops along which no triangle runs, and an edge that has one.
     pub missing: usize,
     pub missing_edge: Option<u32>,
+}
+
+/// A half-edge that is the chord of a loop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoundaryChord {
+    pub half: Half,
+    /// The bound of its distance from its curve.
+    pub sag: f64,
+    /// The edge and the index of the chord in it; none along a polygon without edges.
+    pub of: Option<(u32, u32)>,
 }
 
 /// A chord of a loop: from position to position, and its edge.
@@ -55,8 +65,11 @@ pub(crate) fn boundary(context: &Context<'_>, face: &Face, of_face: &FaceMesh, s
         let direction = claim_loop(&mut pool, chords, &mut found);
         found.directions.push(direction);
     }
-    let sag = |i: usize| pool.taken[i].map(|of| (halves[i], of.map_or(0.0, |of| sag_of(context, of))));
-    found.chords = (0..halves.len()).filter_map(sag).collect();
+    let chord = |i: usize| {
+        let of = pool.taken[i]?;
+        Some(BoundaryChord { half: halves[i], sag: of.map_or(0.0, |of| sag_of(context, of)), of })
+    };
+    found.chords = (0..halves.len()).filter_map(chord).collect();
     pair_cuts(&mut pool, &halves, of_face, &mut found);
     found.stray = (0..halves.len()).filter(|&i| pool.taken[i].is_none()).map(|i| halves[i]).collect();
     found

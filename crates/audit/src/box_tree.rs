@@ -106,7 +106,7 @@ impl BoxTree {
 }
 
 /// True where two boxes have a point in common.
-fn meet(a: &Box3, b: &Box3) -> bool {
+pub(crate) fn meet(a: &Box3, b: &Box3) -> bool {
     a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
 }
 

@@ -15,8 +15,12 @@ pub(crate) struct Chart<'a> {
     pub wrap: Wrap,
     periods: [Option<f64>; 2],
     pub poles: Vec<Pole>,
+    /// Of every corner the axis of the pole that it lies on; empty without poles.
+    pole_axes: Vec<Option<u8>>,
     /// The surface at every corner.
     pub xyz: Vec<DVec3>,
+    /// Its derivatives by u and v there.
+    pub derivatives: Vec<[DVec3; 2]>,
     /// Rounding of points on this surface.
     pub rounding: f64,
     /// Triangles run clockwise in the chart.
@@ -35,17 +39,23 @@ pub(crate) fn turned_triangles(mesh: &FaceMesh) -> usize {
 
 impl<'a> Chart<'a> {
     pub fn new(context: &Context<'_>, surface: &'a Surface, mesh: &'a FaceMesh) -> Self {
-        Self {
+        let mut chart = Self {
             surface,
             mesh,
             uv_box: UvBox::from_points(mesh.corners.iter().map(|c| c.uv)),
             wrap: Wrap::of(surface),
             periods: surface.periods(),
             poles: surface.poles_within(context.same_point),
+            pole_axes: Vec::new(),
             xyz: Vec::new(),
+            derivatives: Vec::new(),
             rounding: ROUNDING * (context.scale + surface_magnitude(surface)),
             turned: false,
+        };
+        if !chart.poles.is_empty() {
+            chart.pole_axes = mesh.corners.iter().map(|c| chart.pole_at(c.uv)).collect();
         }
+        chart
     }
 
     pub fn point(&self, p_uv: DVec2) -> DVec3 {
@@ -65,14 +75,17 @@ impl<'a> Chart<'a> {
 
     /// The axis of the pole that a corner lies on.
     pub fn pole_axis(&self, corner: u32) -> Option<usize> {
-        let uv = self.mesh.corners[corner as usize].uv;
+        self.pole_axes.get(corner as usize).copied().flatten().map(usize::from)
+    }
+
+    fn pole_at(&self, uv: DVec2) -> Option<u8> {
         let at = |pole: &&Pole| {
             let (t, axis) = (uv[pole.axis], pole.axis);
             let off = t - pole.value;
             let off = off - self.periods[axis].map_or(0.0, |p| p * (off / p).round());
             off.abs() <= 1e-9 * (t.abs() + pole.value.abs() + self.uv_box.size()[axis])
         };
-        self.poles.iter().find(at).map(|pole| pole.axis)
+        self.poles.iter().find(at).map(|pole| pole.axis as u8)
     }
 
     /// One end of the half-edge lies on a pole.

@@ -93,7 +93,7 @@ struct CornerFindings {
 /// Recomputes point and normal of every corner.
 fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceFindings, log: &mut Log<'_>) {
     let sign = if chart.turned { -1.0 } else { 1.0 };
-    let chunks: Vec<(Vec<DVec3>, CornerFindings)> = chart
+    let chunks: Vec<(Vec<(DVec3, [DVec3; 2])>, CornerFindings)> = chart
         .mesh
         .corners
         .par_chunks(CHUNK)
@@ -114,7 +114,7 @@ fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceF
                     sum.misplaced += 1;
                     sum.farthest = sum.farthest.max(distance);
                 }
-                p
+                (p, [du, dv])
             });
             (xyz.collect(), sum)
         })
@@ -122,7 +122,8 @@ fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceF
     let mut wrong = 0;
     let mut farthest = 0.0f64;
     for (xyz, sum) in chunks {
-        chart.xyz.extend(xyz);
+        chart.xyz.extend(xyz.iter().map(|of_corner| of_corner.0));
+        chart.derivatives.extend(xyz.iter().map(|of_corner| of_corner.1));
         found.audit.gap = found.audit.gap.max(sum.gap);
         found.misplaced += sum.misplaced;
         farthest = farthest.max(sum.farthest);

@@ -16,6 +16,7 @@
 
 mod area;
 mod boundary;
+mod boundary_tree;
 mod box_tree;
 mod chart;
 mod context;
@@ -25,6 +26,7 @@ mod edges;
 mod face;
 mod fan;
 mod findings;
+mod graph;
 mod halves;
 mod overlap;
 mod part;
@@ -34,9 +36,11 @@ mod region;
 mod report;
 mod sampled;
 mod self_intersections;
+mod separation;
 mod shell;
 mod triangle_pair;
 mod triangle_tree;
+mod unrolled;
 
 pub use distance::{Distance, largest_distance};
 pub use part::audit_part;

@@ -10,15 +10,19 @@
 //! On a closed surface the same is checked against the boundary moved by whole periods: a face that runs
 //! round more than once must not come back over itself.
 //!
-//! Sides that end at a pole are left out of the first check: there the chart has many points for one of the
-//! surface. Signs of areas are exact; only against moved boundaries, whose coordinates are rounded, a
-//! crossing must be wider than rounding.
+//! At a pole the chart has many points for one of the surface. A side that ends there runs along the parameter
+//! line through its other end, as the chord does seen from the axis; where the boundary passes through the
+//! pole, it goes on along the line of the chart that the pole is (see [`crate::fan`]).
+//!
+//! Signs of areas are exact; only against moved boundaries, whose coordinates are rounded, a crossing must be
+//! wider than rounding.
 
-use crate::box_tree::BoxTree;
+use crate::boundary_tree::{BoundaryTree, Chains, Side};
 use crate::chart::Chart;
 use crate::halves::Half;
 use crate::triangle_pair::turn2;
-use chordal_nurbs::{Box3, DVec2, UvBox};
+use crate::unrolled::beside_poles;
+use chordal_nurbs::{DVec2, UvBox};
 
 /// A crossing with a moved side counts if its ends lie this far beyond the other side, relative to the chart.
 const MOVED: f64 = 1e-7;
@@ -29,50 +33,45 @@ const OVER_PERIOD: f64 = 1e-9;
 /// A face that runs round a closed direction more often is not checked against itself beyond.
 const MOST_TURNS: i32 = 8;
 
-/// A side of the boundary, with the face on its left.
-#[derive(Clone, Copy)]
-struct Side {
-    a: DVec2,
-    b: DVec2,
-    /// One end is on a pole, where the chart has many points for one of the surface: the side may lie
-    /// anywhere.
-    at_pole: bool,
-}
-
-impl Side {
-    fn moved(&self, by: DVec2) -> Self {
-        Self { a: self.a + by, b: self.b + by, ..*self }
-    }
-}
-
 /// The number of places found at which triangles of the face lie one on another. `single` are the sides of
 /// triangles without a partner; all triangles must run the same way round.
 pub(crate) fn overlaps(chart: &Chart<'_>, single: &[Half]) -> usize {
-    let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
-    let side = |h: &Half| {
-        let (a, b) = if chart.turned { (uv(h.b), uv(h.a)) } else { (uv(h.a), uv(h.b)) };
-        Side { a, b, at_pole: chart.touches_pole(h) }
-    };
-    let sides: Vec<Side> = single.iter().map(side).collect();
-    let tree = BoxTree::new(sides.iter().map(|s| flat_box(s.a, s.b)));
+    let chains = Chains::of(single, chart.mesh.corners.len());
+    let tree = BoundaryTree::new(sides(chart, &chains));
     let mut found = 0;
-    tree.own_pairs(&mut |i, j| found += usize::from(cross(&sides[i as usize], &sides[j as usize], 0.0)));
-    let inside = places_inside(chart, single);
-    found += wrong_windings(&sides, &tree, &inside, 1);
+    tree.own_pairs(&mut |s, t| found += usize::from(cross(s, t, 0.0)));
+    let inside = places_inside(chart, &chains);
+    found += wrong_windings(&tree, &inside, 1);
     for shift in shifts(chart) {
-        let moved: Vec<Side> = sides.iter().map(|s| s.moved(shift)).collect();
-        let moved_tree = BoxTree::new(moved.iter().map(|s| flat_box(s.a, s.b)));
+        let moved = tree.moved(shift);
         let depth = MOVED * chart.uv_box.size().max_element();
-        tree.pairs_with(&moved_tree, &mut |i, j| {
-            found += usize::from(cross(&sides[i as usize], &moved[j as usize], depth));
-        });
-        found += wrong_windings(&moved, &moved_tree, &inside, 0);
+        tree.pairs_with(&moved, &mut |s, t| found += usize::from(cross(s, t, depth)));
+        found += wrong_windings(&moved, &inside, 0);
     }
     found
 }
 
-fn flat_box(a: DVec2, b: DVec2) -> Box3 {
-    Box3::from_points([a.extend(0.0), b.extend(0.0)])
+/// The boundary in the chart, with the face on its left.
+fn sides(chart: &Chart<'_>, chains: &Chains) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(chains.halves.len());
+    let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
+    let oriented = |a, b| if chart.turned { Side { a: b, b: a } } else { Side { a, b } };
+    if chart.poles.is_empty() {
+        sides.extend(chains.halves.iter().map(|h| oriented(uv(h.a), uv(h.b))));
+        return sides;
+    }
+    for range in &chains.ranges {
+        let halves = &chains.halves[range.clone()];
+        for (i, half) in halves.iter().enumerate() {
+            let [a, b] = beside_poles(chart, half);
+            sides.push(oriented(a, b));
+            let [next, _] = beside_poles(chart, &halves[(i + 1) % halves.len()]);
+            if next != b {
+                sides.push(oriented(b, next));
+            }
+        }
+    }
+    sides
 }
 
 /// True where two sides cross inside both; each end lies farther than `depth` from the line of the other
@@ -83,61 +82,44 @@ fn cross(s: &Side, t: &Side, depth: f64) -> bool {
         let least = depth * line.a.distance(line.b);
         c * d < 0.0 && c.abs() > least && d.abs() > least
     };
-    !s.at_pole && !t.at_pole && apart(s, t) && apart(t, s)
+    // Sides that follow each other only touch.
+    s.b != t.a && s.a != t.b && apart(s, t) && apart(t, s)
 }
 
-/// One place inside the face beside each connected piece of its boundary: the middle of its largest triangle
-/// there.
-fn places_inside(chart: &Chart<'_>, single: &[Half]) -> Vec<DVec2> {
-    let mut piece_of: Vec<u32> = (0..chart.mesh.corners.len() as u32).collect();
-    for h in single {
-        let (a, b) = (root(&mut piece_of, h.a), root(&mut piece_of, h.b));
-        piece_of[a.max(b) as usize] = a.min(b);
+/// One place inside the face beside each chain of its boundary: the middle of its largest triangle there.
+fn places_inside(chart: &Chart<'_>, chains: &Chains) -> Vec<DVec2> {
+    let size = |triangle: u32| {
+        let [a, b, c] = corners(chart, triangle);
+        (b - a).perp_dot(c - a).abs()
+    };
+    let place = |range: &std::ops::Range<usize>| {
+        let halves = &chains.halves[range.clone()];
+        let sizes = halves.iter().map(|h| (size(h.triangle), h));
+        let (_, largest) = sizes.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
+        Some(middle(chart, largest.triangle))
+    };
+    chains.ranges.iter().filter_map(place).collect()
+}
+
+/// The middle of a triangle in the chart; of one with a corner at a pole, of what it stands for.
+fn middle(chart: &Chart<'_>, triangle: u32) -> DVec2 {
+    let t = &chart.mesh.triangles[triangle as usize];
+    let mut uv = corners(chart, triangle);
+    for i in 0..3 {
+        if let Some(axis) = chart.pole_axis(t[i]) {
+            uv[i][1 - axis] = 0.5 * (uv[(i + 1) % 3][1 - axis] + uv[(i + 2) % 3][1 - axis]);
+        }
     }
-    let mut largest: Vec<(u32, f64, u32)> = single
-        .iter()
-        .map(|h| {
-            let [a, b, c] = corners(chart, h.triangle);
-            (root(&mut piece_of, h.a), turn2(a, b, c).abs(), h.triangle)
-        })
-        .collect();
-    largest.sort_unstable_by(|x, y| x.0.cmp(&y.0).then(y.1.total_cmp(&x.1)).then(x.2.cmp(&y.2)));
-    largest.dedup_by_key(|entry| entry.0);
-    largest.iter().map(|&(_, _, t)| corners(chart, t).iter().sum::<DVec2>() / 3.0).collect()
+    uv.iter().sum::<DVec2>() / 3.0
 }
 
 fn corners(chart: &Chart<'_>, triangle: u32) -> [DVec2; 3] {
     chart.mesh.triangles[triangle as usize].map(|c| chart.mesh.corners[c as usize].uv)
 }
 
-/// The representative of a corner's piece; the path to it is shortened.
-fn root(piece_of: &mut [u32], corner: u32) -> u32 {
-    let mut at = corner;
-    while piece_of[at as usize] != at {
-        let above = piece_of[piece_of[at as usize] as usize];
-        piece_of[at as usize] = above;
-        at = above;
-    }
-    at
-}
-
 /// How many of `places` the sides do not wind around `wanted` times.
-fn wrong_windings(sides: &[Side], tree: &BoxTree, places: &[DVec2], wanted: i32) -> usize {
-    let far = sides.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s.a.x).max(s.b.x));
-    let mut winding = vec![0i32; places.len()];
-    // A ray to the right of each place.
-    let rays = BoxTree::new(places.iter().map(|p| flat_box(*p, DVec2::new(far.max(p.x), p.y))));
-    tree.pairs_with(&rays, &mut |i, j| {
-        let (s, p) = (&sides[i as usize], places[j as usize]);
-        let upward = s.a.y <= p.y && p.y < s.b.y;
-        let downward = s.b.y <= p.y && p.y < s.a.y;
-        if upward && turn2(s.a, s.b, p) > 0.0 {
-            winding[j as usize] += 1;
-        } else if downward && turn2(s.a, s.b, p) < 0.0 {
-            winding[j as usize] -= 1;
-        }
-    });
-    winding.iter().filter(|&&w| w != wanted).count()
+fn wrong_windings(tree: &BoundaryTree, places: &[DVec2], wanted: i32) -> usize {
+    places.iter().filter(|p| tree.winding(**p) != wanted).count()
 }
 
 /// The vectors of whole periods by which the chart may come back over itself; one of each pair of opposites.

@@ -27,9 +27,9 @@ pub(crate) fn prove(
     }
     let mut sides = vec![[Side::Inner; 3]; chart.mesh.triangles.len()];
     let mut chords = 0.0f64;
-    for (half, sag) in &at.chords {
-        sides[half.triangle as usize][half.side as usize] = Side::Chord(*sag);
-        chords = chords.max(*sag);
+    for chord in &at.chords {
+        sides[chord.half.triangle as usize][chord.half.side as usize] = Side::Chord(chord.sag);
+        chords = chords.max(chord.sag);
     }
     let facets = facets_error(context, chart, &bounds, &sides, log.index);
     let slivers = slivers_error(chart, &bounds, at, facets.error);

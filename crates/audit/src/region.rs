@@ -127,7 +127,7 @@ fn is_on_both_sheets(chart: &Chart<'_>) -> bool {
 fn beyond_boundary(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary, single: &[Half]) -> usize {
     let uv = |h: &Half| [h.a, h.b].map(|corner| chart.mesh.corners[corner as usize].uv);
     let reach = if bounds.cuts.is_empty() && bounds.stray.is_empty() {
-        UvBox::from_points(bounds.chords.iter().flat_map(|(h, _)| uv(h)))
+        UvBox::from_points(bounds.chords.iter().flat_map(|c| uv(&c.half)))
     } else {
         UvBox::from_points(single.iter().flat_map(uv))
     };

@@ -10,7 +10,7 @@
 //! distance from the whole mesh of the face decides. Points are no proof that a bound holds, and a bound that
 //! is a little too small may pass; one that is wrong by more than what lies between lattice points does not.
 
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, BoundaryChord};
 use crate::chart::Chart;
 use crate::context::Context;
 use crate::findings::{FaceFindings, Log};
@@ -56,7 +56,8 @@ fn farthest(chart: &Chart<'_>, bounds: &Boundary, limit: f64) -> f64 {
     let n = chart.mesh.triangles.len();
     let mut picked: Vec<usize> = (STRIDE / 2..n).step_by(STRIDE).chain(largest(chart)).collect();
     picked.dedup();
-    let chords: FxHashSet<(u32, u8)> = bounds.chords.iter().map(|(h, _)| (h.triangle, h.side)).collect();
+    let side = |c: &BoundaryChord| (c.half.triangle, c.half.side);
+    let chords: FxHashSet<(u32, u8)> = bounds.chords.iter().map(side).collect();
     let measure = |&t: &usize| Measured::new(chart, t, &chords)?.points_beyond(chart, limit);
     let beyond: Vec<Vec<(DVec3, f64)>> = picked.par_iter().with_min_len(16).filter_map(measure).collect();
     if beyond.is_empty() {

@@ -86,6 +86,11 @@ pub(crate) fn cut_each_other(s: &Facet3, t: &Facet3) -> bool {
 }
 
 fn exact_side(plane: &Triangle, p: DVec3) -> f64 {
+    // Four points with one coordinate in common are in one plane: most are on models along the axes.
+    let same = |axis: usize| plane.iter().all(|q| q[axis] == p[axis]);
+    if same(0) || same(1) || same(2) {
+        return 0.0;
+    }
     let at = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     orient3d(at(plane[0]), at(plane[1]), at(plane[2]), at(p))
 }

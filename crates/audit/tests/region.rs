@@ -209,6 +209,52 @@ fn both_sheets_of_a_torus_are_found() {
     }
 }
 
+/// Three quarters of a cylinder of radius 1 and height 1.
+fn three_quarters() -> Part {
+    let mut part = Part::default();
+    let turn = 1.5 * std::f64::consts::PI;
+    let frame = |z: f64| Frame::new(DVec3::Z * z, DVec3::Z, DVec3::X);
+    let at = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, -1.0, 1.0), (1.0, 0.0, 1.0)];
+    let v = at.map(|p| vertex(&mut part, DVec3::from(p)));
+    let arc = |part: &mut Part, z: f64, ends: [VertexId; 2]| {
+        edge(part, Curve::Circle { frame: frame(z), radius: 1.0 }, Range::new(0.0, turn), ends)
+    };
+    let (low, high) = (arc(&mut part, 0.0, [v[0], v[1]]), arc(&mut part, 1.0, [v[3], v[2]]));
+    let (up, down) = (line(&mut part, v[1], v[2]), line(&mut part, v[3], v[0]));
+    let cylinder = Surface::Cylinder { frame: frame(0.0), radius: 1.0 };
+    face(&mut part, cylinder, vec![a_loop([(low, true), up, (high, false), down])]);
+    close(&mut part, false);
+    part
+}
+
+#[test]
+fn the_short_way_round_is_found() {
+    let part = three_quarters();
+    let good = mesh(&part);
+    assert!(audited(&part, &good).clean());
+    // One chord for each arc, which leads to the right point, but the other way round.
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let corner = |i: u32| {
+        let p = part.vertices[i as usize].point;
+        let uv = DVec2::new(if p.x > 0.5 { 0.0 } else { -quarter }, p.z);
+        Corner { position: i, uv, normal: DVec3::new(p.x, p.y, 0.0) }
+    };
+    let short = PartMesh {
+        positions: part.vertices.iter().map(|v| v.point).collect(),
+        origins: (0..4).map(Origin::Vertex).collect(),
+        faces: vec![FaceMesh {
+            face: 0,
+            corners: (0..4).map(corner).collect(),
+            triangles: vec![[0, 2, 1], [0, 3, 2]],
+            quads: 0,
+        }],
+        edges: part.edges.iter().map(|e| vec![e.start.0, e.end.0]).collect(),
+    };
+    let unproven = AuditOptions::new(TOLERANCE).with_proven(false);
+    let audit = audit_part(&part, &short, &unproven, None);
+    assert!(codes(&audit).contains(&"wrong-area"), "{:?}", audit.problems);
+}
+
 fn square(part: &mut Part, corner: DVec3, size: f64) -> Vec<(EdgeId, bool)> {
     let at = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
     let v = at.map(|(x, y)| vertex(part, corner + size * DVec3::new(x, y, 0.0)));
