@@ -81,6 +81,13 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     found
 }
 
+/// The surface at a corner.
+#[derive(Clone, Copy)]
+struct OnSurface {
+    point: DVec3,
+    derivatives: [DVec3; 2],
+}
+
 /// What the corners of one task showed.
 #[derive(Clone, Copy, Default)]
 struct CornerFindings {
@@ -93,7 +100,7 @@ struct CornerFindings {
 /// Recomputes point and normal of every corner.
 fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceFindings, log: &mut Log<'_>) {
     let sign = if chart.turned { -1.0 } else { 1.0 };
-    let chunks: Vec<(Vec<(DVec3, [DVec3; 2])>, CornerFindings)> = chart
+    let chunks: Vec<(Vec<OnSurface>, CornerFindings)> = chart
         .mesh
         .corners
         .par_chunks(CHUNK)
@@ -114,7 +121,7 @@ fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceF
                     sum.misplaced += 1;
                     sum.farthest = sum.farthest.max(distance);
                 }
-                (p, [du, dv])
+                OnSurface { point: p, derivatives: [du, dv] }
             });
             (xyz.collect(), sum)
         })
@@ -122,8 +129,8 @@ fn check_corners(context: &Context<'_>, chart: &mut Chart<'_>, found: &mut FaceF
     let mut wrong = 0;
     let mut farthest = 0.0f64;
     for (xyz, sum) in chunks {
-        chart.xyz.extend(xyz.iter().map(|of_corner| of_corner.0));
-        chart.derivatives.extend(xyz.iter().map(|of_corner| of_corner.1));
+        chart.xyz.extend(xyz.iter().map(|s| s.point));
+        chart.derivatives.extend(xyz.iter().map(|s| s.derivatives));
         found.audit.gap = found.audit.gap.max(sum.gap);
         found.misplaced += sum.misplaced;
         farthest = farthest.max(sum.farthest);
