@@ -21,7 +21,7 @@ use crate::seams::Seams;
 use crate::snap::{Grid, settled};
 use crate::trimmed_face::{OpenLoop, TrimmedFace};
 use chordal_brep::MeshIssue;
-use chordal_nurbs::{DVec2, DVec3, UvBox};
+use chordal_nurbs::{BoxSide, DVec2, DVec3, UvBox};
 use cuts::{Side, hold_beside};
 use std::collections::BTreeMap;
 use winding::seam_beside;
@@ -309,29 +309,21 @@ impl Unroll<'_, '_> {
                 }
             }
         }
-        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
         let surface = self.context.surface;
-        let is_pole = |a: DVec2, b: DVec2| {
-            let axis = usize::from(a.y == b.y);
-            let tiny = 1e-9 * (max - min)[axis];
-            surface.poles.iter().any(|p| p.axis == axis && (p.value - a[axis]).abs() <= tiny)
-        };
-        let sides: [(DVec2, DVec2); 4] = std::array::from_fn(|k| (corners[k], corners[(k + 1) % 4]));
-        let poles = sides.map(|(a, b)| is_pole(a, b));
+        let whole = UvBox { min, max };
+        let (corners, sides) = (whole.corners(), whole.sides());
+        let poles = sides.map(|side| side.is_pole(&whole, &surface.poles));
         let keys = self.corner_keys(&corners, &poles);
         // Opposite sides of a closed direction share their inner points.
         let mut inner: [Vec<(Key, DVec2)>; 4] = Default::default();
         for k in 0..4 {
-            let (from, to) = sides[k];
-            let twin = if k >= 2 && !poles[k] && surface.periods[usize::from(from.y == to.y)].is_some() {
-                Some(k - 2)
-            } else {
-                None
-            };
+            let BoxSide { from, to, .. } = sides[k];
+            let is_seam = !poles[k] && surface.periods[sides[k].axis()].is_some();
+            let twin = (k >= 2 && is_seam).then(|| k - 2);
             inner[k] = if poles[k] {
                 Vec::new()
             } else if let Some(twin) = twin {
-                let by = to - sides[twin].0;
+                let by = to - sides[twin].from;
                 inner[twin].iter().rev().map(|&(key, uv)| (key, uv + by)).collect()
             } else {
                 self.between(from, to).into_iter().map(|uv| (self.add_private(uv), uv)).collect()

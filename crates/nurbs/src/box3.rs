@@ -51,4 +51,12 @@ impl Box3 {
     pub fn contains(&self, p_xyz: DVec3) -> bool {
         p_xyz.cmpge(self.min).all() && p_xyz.cmple(self.max).all()
     }
+    /// Whether two boxes have a point in common.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+    /// The distance from a point; zero inside.
+    pub fn distance(&self, p_xyz: DVec3) -> f64 {
+        (self.min - p_xyz).max(p_xyz - self.max).max(DVec3::ZERO).length()
+    }
 }

@@ -94,8 +94,48 @@ impl UvBox {
     pub fn contains(&self, p_uv: DVec2) -> bool {
         p_uv.cmpge(self.min).all() && p_uv.cmple(self.max).all()
     }
+    /// The corners counter-clockwise, from the least parameters on.
+    pub fn corners(&self) -> [DVec2; 4] {
+        let Self { min, max } = *self;
+        [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+    }
+    /// The sides counter-clockwise: from corner to corner, with the box on the left.
+    pub fn sides(&self) -> [BoxSide; 4] {
+        let corners = self.corners();
+        std::array::from_fn(|k| BoxSide { index: k, from: corners[k], to: corners[(k + 1) % 4] })
+    }
     /// The box with every side moved outwards, by different lengths along u and v.
     pub fn inflated(&self, by: DVec2) -> Self {
         Self { min: self.min - by, max: self.max + by }
+    }
+}
+
+/// One side of a box of parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxSide {
+    /// Its place among the sides.
+    index: usize,
+    /// Where it starts.
+    pub from: DVec2,
+    /// Where it ends.
+    pub to: DVec2,
+}
+
+impl BoxSide {
+    /// The parameter that is constant along the side: 0 for u, 1 for v.
+    pub fn axis(&self) -> usize {
+        1 - self.index % 2
+    }
+    /// The constant parameter.
+    pub fn value(&self) -> f64 {
+        self.from[self.axis()]
+    }
+    /// Whether the side is at the upper end of the constant parameter.
+    pub fn is_upper(&self) -> bool {
+        matches!(self.index, 1 | 2)
+    }
+    /// Whether the other parameter grows along the side.
+    pub fn is_forward(&self) -> bool {
+        self.index < 2
     }
 }

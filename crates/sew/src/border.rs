@@ -1,9 +1,8 @@
 //! Borders: the edges that one coedge alone uses, each as a polyline with parameters.
 
 use crate::foot::segment_distance;
-use crate::tree::Tree;
 use chordal_brep::{EdgeId, Loop, Part};
-use chordal_nurbs::{Box3, Curve, Range};
+use chordal_nurbs::{Box3, BoxTree, Curve, Range};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -47,7 +46,7 @@ pub(crate) struct Borders {
     pub all: Vec<Border>,
     /// Per chord of the tree: border and chord in it.
     pub chords: Vec<(u32, u32)>,
-    pub tree: Tree,
+    pub tree: BoxTree,
 }
 
 /// The uses of every edge, in the order of faces and loops.
@@ -88,7 +87,7 @@ impl Borders {
                 boxes.push(Box3::from_points([ends[0], ends[1]]).inflated(border.stray[k]));
             }
         }
-        Self { all, chords, tree: Tree::new(boxes) }
+        Self { all, chords, tree: BoxTree::new(boxes) }
     }
 
     /// The distance of `p` from a chord of the tree, less what the curve may stray from it.

@@ -4,8 +4,7 @@
 //! Pairs are joined in the order of their distances. A join that would move a vertex too far, or that would
 //! make the two ends of an edge that must stay the same, is left out.
 
-use crate::tree::Tree;
-use chordal_nurbs::Box3;
+use chordal_nurbs::{Box3, BoxTree};
 use glam::DVec3;
 
 /// Neighbours of one vertex that are looked at: more are other copies of the same few.
@@ -64,13 +63,13 @@ pub(crate) fn cluster_pairs(
 
 /// Pairs within the tolerance, the closest first.
 fn close_pairs(corners: &[Corner], tolerance: f64) -> Vec<(f64, u32, u32)> {
-    let tree = Tree::new(corners.iter().map(|c| Box3 { min: c.point, max: c.point }).collect());
+    let tree = BoxTree::new(corners.iter().map(|c| Box3 { min: c.point, max: c.point }));
     let mut pairs = Vec::new();
     let mut near: Vec<(f64, u32)> = Vec::new();
     for (i, corner) in corners.iter().enumerate() {
         near.clear();
         let query = Box3 { min: corner.point, max: corner.point }.inflated(tolerance);
-        tree.visit(query, |j| {
+        tree.meeting(query, |j| {
             let d = corners[j as usize].point.distance(corner.point);
             if j as usize != i && d <= tolerance {
                 near.push((d, j));

@@ -89,7 +89,7 @@ fn cuts_at(
 ) -> Vec<Cut> {
     let p = clusters.all[cluster as usize].target;
     let mut near: Vec<(u32, u32, f64)> = Vec::new();
-    borders.tree.visit(Box3 { min: p, max: p }.inflated(tolerance), |chord| {
+    borders.tree.meeting(Box3 { min: p, max: p }.inflated(tolerance), |chord| {
         let (b, k) = borders.chords[chord as usize];
         let border = &borders.all[b as usize];
         if ends[b as usize].contains(&cluster) {

@@ -36,7 +36,6 @@ mod rebuild;
 mod report;
 mod run;
 mod shells;
-mod tree;
 mod uv_loops;
 
 pub use gaps::{AutoTolerance, GapBin, gap_survey};

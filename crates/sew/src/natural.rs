@@ -4,23 +4,10 @@
 //! A side that is closed onto the opposite one is no border, nor one that is a single point.
 
 use chordal_brep::{Coedge, Edge, EdgeId, Face, FaceGeometry, Loop, Part, Pcurve, Source, Vertex, VertexId};
-use chordal_nurbs::{Curve, Curve2, DVec2, NurbsCurve3, NurbsSurface, Range, Surface};
+use chordal_nurbs::{
+    BoxSide, Curve, Curve2, DVec2, NaturalBorder, NurbsCurve3, NurbsSurface, Range, Surface,
+};
 use std::sync::Arc;
-
-/// One side of the domain: `axis` is the parameter that is constant, at its lower or upper end.
-#[derive(Clone, Copy, Debug)]
-struct Side {
-    axis: usize,
-    upper: bool,
-}
-
-/// The sides as a loop with the interior on its left; each is run forward where its own parameter grows.
-const LOOP: [(Side, bool); 4] = [
-    (Side { axis: 1, upper: false }, true),
-    (Side { axis: 0, upper: true }, true),
-    (Side { axis: 1, upper: true }, false),
-    (Side { axis: 0, upper: false }, false),
-];
 
 /// Gives natural borders to the faces without loops; returns how many got one.
 pub(crate) fn add_natural_borders(part: &mut Part) -> usize {
@@ -34,31 +21,26 @@ fn add_border(part: &mut Part, face: usize) -> bool {
     };
     let (surface, source, same_sense) = (surface.clone(), *source, *same_sense);
     let domain = surface.domain();
-    if !domain.is_finite() {
-        return false;
-    }
-    let periods = surface.periods();
     let poles = surface.poles();
-    let is_pole = |side: Side| {
-        let value = side.value(&surface);
-        poles
-            .iter()
-            .any(|p| p.axis == side.axis && (p.value - value).abs() <= 1e-9 * domain.size()[side.axis])
+    // Rings are loops of their own.
+    let (sides, are_rings): (Vec<BoxSide>, bool) = match surface.natural_border() {
+        NaturalBorder::None => return false,
+        NaturalBorder::Loop(sides) => {
+            (sides.into_iter().filter(|side| !side.is_pole(&domain, &poles)).collect(), false)
+        }
+        NaturalBorder::Rings(sides) => (sides, true),
     };
-    let open = |side: Side| periods[side.axis].is_none() && !is_pole(side);
     let mut corners = Corners { part, surface: &surface, source, known: Vec::new() };
-    let mut runs: Vec<Coedge> = Vec::new();
-    for (side, forward) in LOOP.into_iter().filter(|s| open(s.0)) {
-        let edge = corners.edge(side);
-        runs.push(Coedge { edge, forward, pcurves: vec![side.pcurve(&surface)] });
-    }
-    if runs.is_empty() {
+    let coedge = |side: &BoxSide| {
+        let edge = corners.edge(Side(*side));
+        Coedge { edge, forward: side.is_forward(), pcurves: vec![Side(*side).pcurve(&surface)] }
+    };
+    let coedges: Vec<Coedge> = sides.iter().map(coedge).collect();
+    if coedges.is_empty() {
         return false;
     }
-    // Sides whose neighbours are closed are rings, each a loop of its own.
-    let rings = periods.iter().any(Option::is_some);
     let mut loops: Vec<Vec<Coedge>> =
-        if rings { runs.into_iter().map(|run| vec![run]).collect() } else { vec![runs] };
+        if are_rings { coedges.into_iter().map(|ring| vec![ring]).collect() } else { vec![coedges] };
     if !same_sense {
         for a_loop in &mut loops {
             a_loop.reverse();
@@ -66,7 +48,7 @@ fn add_border(part: &mut Part, face: usize) -> bool {
         }
     }
     part.faces[face].loops =
-        loops.into_iter().map(|coedges| Loop::Edges { coedges, outer: !rings }).collect();
+        loops.into_iter().map(|coedges| Loop::Edges { coedges, outer: !are_rings }).collect();
     true
 }
 
@@ -100,20 +82,19 @@ impl Corners<'_> {
     }
 }
 
-impl Side {
-    fn value(self, surface: &Surface) -> f64 {
-        let domain = surface.domain();
-        if self.upper { domain.max[self.axis] } else { domain.min[self.axis] }
-    }
+/// A side of the domain as an edge, in the direction in which its own parameter grows.
+#[derive(Clone, Copy)]
+struct Side(BoxSide);
 
+impl Side {
     fn range(self, surface: &Surface) -> Range {
         let domain = surface.domain();
-        if self.axis == 0 { domain.v() } else { domain.u() }
+        if self.0.axis() == 0 { domain.v() } else { domain.u() }
     }
 
-    fn line(self, surface: &Surface) -> Curve2 {
-        let value = self.value(surface);
-        if self.axis == 0 {
+    fn line(self) -> Curve2 {
+        let value = self.0.value();
+        if self.0.axis() == 0 {
             Curve2::Line { origin: DVec2::new(value, 0.0), direction: DVec2::Y }
         } else {
             Curve2::Line { origin: DVec2::new(0.0, value), direction: DVec2::X }
@@ -121,7 +102,7 @@ impl Side {
     }
 
     fn pcurve(self, surface: &Surface) -> Pcurve {
-        Pcurve { curve: Arc::new(self.line(surface)), range: self.range(surface) }
+        Pcurve { curve: Arc::new(self.line()), range: self.range(surface) }
     }
 
     fn curve(self, surface: &Arc<Surface>) -> Curve {
@@ -130,31 +111,32 @@ impl Side {
         {
             return Curve::Nurbs(row);
         }
-        Curve::OnSurface { surface: surface.clone(), curve: Box::new(self.line(surface)) }
+        Curve::OnSurface { surface: surface.clone(), curve: Box::new(self.line()) }
     }
 
     /// The row of control points that is the side's own, where the knots are clamped.
     fn row(self, nurbs: &NurbsSurface) -> Option<NurbsCurve3> {
         let [count_u, count_v] = nurbs.counts();
         let [degree_u, degree_v] = nurbs.degree();
-        let (across, degree_across, along, degree) = if self.axis == 0 {
+        let (axis, is_upper) = (self.0.axis(), self.0.is_upper());
+        let (across, degree_across, along, degree) = if axis == 0 {
             (nurbs.knots_u(), degree_u, nurbs.knots_v(), degree_v)
         } else {
             (nurbs.knots_v(), degree_v, nurbs.knots_u(), degree_u)
         };
         let n = across.len();
-        let clamped = if self.upper {
+        let clamped = if is_upper {
             across[n - 1 - degree_across] == across[n - 1]
         } else {
             across[0] == across[degree_across]
         };
-        let index = |i: usize| match (self.axis, self.upper) {
+        let index = |i: usize| match (axis, is_upper) {
             (0, false) => i,
             (0, true) => (count_u - 1) * count_v + i,
             (_, false) => i * count_v,
             (_, true) => i * count_v + count_v - 1,
         };
-        let count = if self.axis == 0 { count_v } else { count_u };
+        let count = if axis == 0 { count_v } else { count_u };
         let points = (0..count).map(|i| nurbs.points()[index(i)]).collect();
         let weights = nurbs.weights().map(|w| (0..count).map(|i| w[index(i)]).collect());
         if !clamped {

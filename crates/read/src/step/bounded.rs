@@ -80,8 +80,7 @@ impl Builder<'_> {
         if domain.is_finite() && (domain.min - uv.min).abs().max_element() == 0.0 && domain.max == uv.max {
             return Vec::new();
         }
-        let (lo, hi) = (uv.min, uv.max);
-        let corners = [lo, DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y)];
+        let corners = uv.corners();
         let points = corners.map(|c| surface.point(c));
         let size = points
             .iter()

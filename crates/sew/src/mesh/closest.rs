@@ -3,8 +3,7 @@
 
 use super::boundary::Boundaries;
 use crate::foot::segment_distance;
-use crate::tree::Tree;
-use chordal_nurbs::Box3;
+use chordal_nurbs::{Box3, BoxTree};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -45,7 +44,7 @@ pub(crate) struct Approaches {
 struct Edges {
     /// Border and edge in it.
     of: Vec<(u32, u32)>,
-    tree: Tree,
+    tree: BoxTree,
 }
 
 impl Edges {
@@ -58,7 +57,7 @@ impl Edges {
                 boxes.push(Box3::from_points(boundary.edge(k).map(|v| boundaries.point(v))));
             }
         }
-        Self { of, tree: Tree::new(boxes) }
+        Self { of, tree: BoxTree::new(boxes) }
     }
 }
 
@@ -83,7 +82,7 @@ fn of_vertex(boundaries: &Boundaries, edges: &Edges, b: u32, i: usize, tolerance
     let p = boundaries.point(boundary.vertices[i]);
     let own = boundary.along[i];
     let mut near: Vec<(u32, u32, f64, f64)> = Vec::new();
-    edges.tree.visit(Box3 { min: p, max: p }.inflated(tolerance), |e| {
+    edges.tree.meeting(Box3 { min: p, max: p }.inflated(tolerance), |e| {
         let (other, k) = edges.of[e as usize];
         let ends = boundaries.all[other as usize].edge(k as usize).map(|v| boundaries.point(v));
         let (d, share) = segment_distance(p, ends[0], ends[1]);
