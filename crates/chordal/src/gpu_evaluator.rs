@@ -93,7 +93,7 @@ impl BulkEvaluator for GpuEvaluator {
                 Some(jets)
             }
             // One surface too large for the device says nothing about others.
-            Err(GpuError::TooLarge { .. }) => None,
+            Err(GpuError::TooLarge { .. } | GpuError::TooManyPoints(_)) => None,
             Err(error) => {
                 if let Ok(mut failed) = self.failed.lock() {
                     failed.get_or_insert(error);

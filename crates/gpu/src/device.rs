@@ -1,14 +1,16 @@
 //! The device: which adapter, what it must be able to do, and what becomes of its errors.
 
 use crate::device_choice::DeviceChoice;
-use crate::error::GpuError;
+use crate::error::{Capability, GpuError, Task};
 use std::sync::{Arc, Mutex};
 use wgpu::{Adapter, DeviceType, DownlevelFlags, Features, Limits};
 
 /// A device with its queue.
 #[derive(Debug)]
 pub struct Gpu {
+    /// The device.
     pub device: wgpu::Device,
+    /// Its queue.
     pub queue: wgpu::Queue,
     name: String,
     software: bool,
@@ -127,11 +129,11 @@ impl Gpu {
         polled.map(|_| ()).map_err(|e| GpuError::Lost(e.to_string()))
     }
 
-    /// Runs `work` and turns what the device objects to into an error; `doing` continues "while …".
+    /// Runs `work` and turns what the device objects to into an error.
     ///
     /// # Errors
     /// What `work` returns, [`GpuError::Lost`], [`GpuError::OutOfMemory`] or [`GpuError::Device`].
-    pub fn watched<T>(&self, doing: &str, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+    pub fn watched<T>(&self, task: Task, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         self.check()?;
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -141,8 +143,8 @@ impl Gpu {
         self.check()?;
         match errors.into_iter().flatten().next() {
             None => result,
-            Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory(doing.into())),
-            Some(error) => Err(GpuError::Device { doing: doing.into(), reason: error.to_string() }),
+            Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory(task)),
+            Some(error) => Err(GpuError::Device { task, reason: error.to_string() }),
         }
     }
 }
@@ -164,24 +166,21 @@ fn chosen(adapters: Vec<Adapter>, choice: DeviceChoice) -> Option<Adapter> {
     adapters.into_iter().filter(allowed).min_by_key(rank)
 }
 
-/// What the kernels need and an adapter does not have, in words.
-fn missing(computes: bool, features: Features, limits: &Limits) -> Option<String> {
+/// What the kernels need and an adapter does not have.
+fn missing(computes: bool, features: Features, limits: &Limits) -> Option<Capability> {
     if !computes {
-        return Some("compute shaders".into());
+        return Some(Capability::ComputeShaders);
     }
     if !features.contains(Features::IMMEDIATES) {
-        return Some("immediate data (push constants)".into());
+        return Some(Capability::ImmediateData);
     }
     let needs = [
-        (limits.max_compute_invocations_per_workgroup, 64, "compute workgroups of 64"),
-        (limits.max_storage_buffers_per_shader_stage, 8, "8 storage buffers a stage"),
-        (limits.max_immediate_size, IMMEDIATES, "64 bytes of immediate data"),
-        (limits.max_texture_dimension_2d, 2048, "textures of 2048 × 2048"),
+        (limits.max_compute_invocations_per_workgroup, 64, Capability::Workgroups as fn(u32) -> Capability),
+        (limits.max_storage_buffers_per_shader_stage, 8, Capability::StorageBuffers),
+        (limits.max_immediate_size, IMMEDIATES, Capability::ImmediateBytes),
+        (limits.max_texture_dimension_2d, 2048, Capability::Textures),
     ];
-    needs
-        .into_iter()
-        .find(|(has, needs, _)| has < needs)
-        .map(|(has, _, what)| format!("{what} (it has {has})"))
+    needs.into_iter().find(|(has, needs, _)| has < needs).map(|(has, _, lacks)| lacks(has))
 }
 
 #[cfg(test)]
@@ -192,17 +191,19 @@ mod tests {
     #[test]
     fn what_is_missing_is_named() {
         let needs = |limits: &Limits| missing(true, Features::IMMEDIATES, limits);
-        assert_eq!(needs(&Limits::default()), Some("64 bytes of immediate data (it has 0)".into()));
+        assert_eq!(needs(&Limits::default()), Some(Capability::ImmediateBytes(0)));
         let mut limits = Limits { max_immediate_size: 128, ..Limits::default() };
         assert_eq!(needs(&limits), None);
         limits.max_compute_invocations_per_workgroup = 0;
-        assert_eq!(needs(&limits), Some("compute workgroups of 64 (it has 0)".into()));
+        assert_eq!(needs(&limits), Some(Capability::Workgroups(0)));
         limits = Limits::downlevel_webgl2_defaults();
-        assert_eq!(missing(false, Features::IMMEDIATES, &limits), Some("compute shaders".into()));
+        assert_eq!(missing(false, Features::IMMEDIATES, &limits), Some(Capability::ComputeShaders));
         let reason = missing(true, Features::empty(), &limits);
-        assert_eq!(reason, Some("immediate data (push constants)".into()));
-        let sentence = GpuError::Lacks { adapter: "an old card".into(), what: "compute shaders".into() };
+        assert_eq!(reason, Some(Capability::ImmediateData));
+        let sentence = GpuError::Lacks { adapter: "an old card".into(), what: Capability::ComputeShaders };
         assert_eq!(sentence.to_string(), "the adapter an old card cannot be used: it lacks compute shaders");
+        let few = Capability::Workgroups(32).to_string();
+        assert_eq!(few, "compute workgroups of 64 (it has 32)");
     }
 
     #[test]

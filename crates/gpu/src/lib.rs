@@ -4,6 +4,8 @@
 //! file with a CPU twin of the same name; the tests hold the two against each other and against double
 //! precision, within the bounds stated at [`SurfaceEntry::point_bound`].
 
+#![deny(missing_docs)]
+
 mod device;
 mod device_choice;
 mod draw;
@@ -24,7 +26,7 @@ pub use draw::{
     Projection, RenderOptions, Renderer, Scenery, SectionPlane, Shape, Style, Trim, Vertex, View,
     mesh_scenery, scene_outline,
 };
-pub use error::GpuError;
+pub use error::{Capability, GpuError, Resource, Task, Unsuitable};
 pub use evaluate::{Evaluated, Evaluation, KernelRunner, OnDevice, Search, Variant, Wanted, evaluate_twin};
 pub use faces::{TrimmedFace, TrimmedModel, TrimmedPart, trimmed_model};
 pub use real::Real;

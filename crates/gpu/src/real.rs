@@ -27,14 +27,19 @@ pub trait Real:
     /// The squared product of two derivatives is rounding below this share of the longer one to the fourth
     /// power.
     const DEGENERATE: f64;
+    /// The nearest number of this type.
     fn from_f64(value: f64) -> Self;
+    /// The same number in double precision.
     fn to_f64(self) -> f64;
+    /// The square root.
     fn square_root(self) -> Self;
     /// As WGSL's `f32(x)`.
     fn from_u32(value: u32) -> Self;
+    /// 0.
     fn zero() -> Self {
         Self::default()
     }
+    /// 1.
     fn one() -> Self {
         Self::from_f64(1.0)
     }

@@ -10,10 +10,22 @@ use chordal_nurbs::DVec2;
 #[derive(Clone, Debug)]
 pub enum Request {
     /// All pairs of these parameters; results run through v fastest.
-    Grid { surface: usize, us: Vec<f64>, vs: Vec<f64> },
+    Grid {
+        /// The surface, by index.
+        surface: usize,
+        /// The parameters along u.
+        us: Vec<f64>,
+        /// The parameters along v.
+        vs: Vec<f64>,
+    },
     /// These points. [`Samples::new`] keeps their order; sorting them by knot span first makes memory access
     /// regular.
-    Points { surface: usize, uvs: Vec<DVec2> },
+    Points {
+        /// The surface, by index.
+        surface: usize,
+        /// The parameters of each point.
+        uvs: Vec<DVec2>,
+    },
 }
 
 impl Request {
@@ -79,7 +91,7 @@ impl<R: Real> Samples<R> {
     /// Prepares requests; spans are found here.
     ///
     /// # Errors
-    /// [`GpuError::NoSuchSurface`]; [`GpuError::TooLarge`] above 2³² points.
+    /// [`GpuError::NoSuchSurface`]; [`GpuError::TooManyPoints`] above 2³² points.
     pub fn new(set: &SurfaceSet<R>, requests: &[Request]) -> Result<Self, GpuError> {
         let mut samples = Self::default();
         for request in requests {
@@ -95,12 +107,7 @@ impl<R: Real> Samples<R> {
             samples.ranges.push((first, samples.points - first));
             samples.head_ends.push(samples.heads.len());
             if samples.points > u32::MAX as usize {
-                return Err(GpuError::TooLarge {
-                    what: "the list of points".into(),
-                    bytes: samples.points as u64,
-                    limit: u64::from(u32::MAX),
-                    adapter: "any adapter".into(),
-                });
+                return Err(GpuError::TooManyPoints(samples.points));
             }
         }
         Ok(samples)
@@ -110,6 +117,7 @@ impl<R: Real> Samples<R> {
     pub fn len(&self) -> usize {
         self.points
     }
+    /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
         self.points == 0
     }

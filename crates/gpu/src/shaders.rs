@@ -5,6 +5,7 @@ use crate::real::Real;
 /// A shader: the files it is put together from, in order.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
+    /// The name of its last file.
     pub name: &'static str,
     files: &'static [&'static str],
     /// The storage buffers of a compute shader, and whether it only reads them.

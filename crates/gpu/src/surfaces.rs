@@ -19,14 +19,18 @@ use std::ops::{Range, RangeInclusive};
 /// Where the local coordinates of a surface lie: model = `middle` + `size` · local.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalFrame {
+    /// The origin of the local coordinates.
     pub middle: DVec3,
+    /// The length of one local unit.
     pub size: f64,
 }
 
 /// One surface of a set.
 #[derive(Clone, Debug)]
 pub struct SurfaceEntry {
+    /// Where its local coordinates lie.
     pub frame: LocalFrame,
+    /// The degrees along u and v.
     pub degree: [usize; 2],
     /// The largest weight over the smallest, by size: 1 where there are none.
     pub weight_ratio: f64,
@@ -79,6 +83,7 @@ impl DirectionEntry {
 pub struct Edit {
     /// Control points or weights.
     pub points: bool,
+    /// Knots.
     pub knots: bool,
 }
 
@@ -96,6 +101,7 @@ pub struct SurfaceSet<R> {
 }
 
 impl<R: Real> SurfaceSet<R> {
+    /// An empty set.
     pub fn new() -> Self {
         Self::default()
     }
@@ -115,12 +121,15 @@ impl<R: Real> SurfaceSet<R> {
         if self.wants_bezier { surface.bezier_patches(everywhere) } else { Vec::new() }
     }
 
+    /// The number of surfaces.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
+    /// Whether there is no surface.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
+    /// The surfaces in their order.
     pub fn entries(&self) -> &[SurfaceEntry] {
         &self.entries
     }

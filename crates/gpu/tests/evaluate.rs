@@ -3,8 +3,8 @@
 mod common;
 
 use chordal_gpu::{
-    DeviceChoice, Edit, Gpu, GpuError, KernelRunner, OnDevice, Real, Request, Samples, Search, SurfaceSet,
-    Variant, Wanted, evaluate_twin, sorted_by_span,
+    DeviceChoice, Edit, Gpu, GpuError, KernelRunner, OnDevice, Real, Request, Resource, Samples, Search,
+    SurfaceSet, Variant, Wanted, evaluate_twin, sorted_by_span,
 };
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, NurbsSurface, Range};
 use common::{Random, gpu, no_gpu};
@@ -397,9 +397,7 @@ fn what_exceeds_a_binding_is_split_or_refused() {
         large.push_surface(&many);
     }
     let refused = OnDevice::upload(&small, &large).err();
-    assert!(
-        matches!(&refused, Some(GpuError::TooLarge { what, .. }) if what == "the control points of the model")
-    );
+    assert!(matches!(&refused, Some(GpuError::TooLarge { what: Resource::ControlPoints, .. })));
 }
 
 /// A device that goes away is an error at the next call, whatever that is.

@@ -17,7 +17,7 @@
 //! digits of high degrees, which the power form loses (2^p units in the worst case, hence
 //! [`HIGHEST_DEGREE`]).
 
-use chordal_gpu::{GpuError, SurfaceSet};
+use chordal_gpu::{GpuError, SurfaceSet, Unsuitable};
 use pulp::{Arch, Simd, WithSimd};
 
 /// The highest degree along u that rows are evaluated at.
@@ -49,15 +49,16 @@ impl<'a> HostSurface<'a> {
     /// Prepares a surface of a set made by [`SurfaceSet::with_bezier`].
     ///
     /// # Errors
-    /// [`GpuError::NoSuchSurface`]; [`GpuError::Device`] above [`HIGHEST_DEGREE`] along u or without Bézier
-    /// nets.
+    /// [`GpuError::NoSuchSurface`]; [`GpuError::Unsuitable`] above [`HIGHEST_DEGREE`] along u or without
+    /// Bézier nets.
     pub fn new(set: &'a SurfaceSet<f64>, surface: usize) -> Result<Self, GpuError> {
         let entry = set.entries().get(surface).ok_or(GpuError::NoSuchSurface(surface))?;
         let [p, q] = entry.degree;
-        if p > HIGHEST_DEGREE || !set.has_bezier() {
-            let reason =
-                format!("rows need Bézier nets and a degree of at most {HIGHEST_DEGREE} along u, not {p}");
-            return Err(GpuError::Device { doing: "evaluating rows on the host".into(), reason });
+        if p > HIGHEST_DEGREE {
+            return Err(GpuError::Unsuitable(Unsuitable::Degree { degree: p, most: HIGHEST_DEGREE }));
+        }
+        if !set.has_bezier() {
+            return Err(GpuError::Unsuitable(Unsuitable::NoBezierNets));
         }
         let beziers = set.bezier_points(surface);
         let form = match (entry.weight_ratio == 1.0, beziers.iter().all(|b| b[3] > 0.0)) {
@@ -453,10 +454,10 @@ mod tests {
     fn what_rows_cannot_do_is_an_error() {
         let mut set = SurfaceSet::<f64>::with_bezier();
         set.push_surface(&sheet([HIGHEST_DEGREE + 1, 2], |_| 1.0));
-        assert!(matches!(HostSurface::new(&set, 0), Err(GpuError::Device { .. })));
+        assert!(matches!(HostSurface::new(&set, 0), Err(GpuError::Unsuitable(Unsuitable::Degree { .. }))));
         assert_eq!(HostSurface::new(&set, 1).err(), Some(GpuError::NoSuchSurface(1)));
         let mut plain = SurfaceSet::<f64>::new();
         plain.push_surface(&sheet([2, 2], |_| 1.0));
-        assert!(matches!(HostSurface::new(&plain, 0), Err(GpuError::Device { .. })));
+        assert!(matches!(HostSurface::new(&plain, 0), Err(GpuError::Unsuitable(Unsuitable::NoBezierNets))));
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::evaluation::{PAPER, rates, surface};
 use crate::time::seconds;
-use chordal_gpu::{Gpu, GpuError, Request, Samples, SurfaceSet, Variant, Wanted};
+use chordal_gpu::{Gpu, GpuError, Request, Samples, SurfaceSet, Task, Variant, Wanted};
 use wgpu::BufferUsages;
 
 /// Bytes of a point: three numbers in single precision.
@@ -18,7 +18,7 @@ pub fn against_copies(gpu: &Gpu) -> Result<(), GpuError> {
     let buffer = |usage| {
         let descriptor =
             wgpu::BufferDescriptor { label: None, size: bytes, usage, mapped_at_creation: false };
-        gpu.watched("making room for copies", || Ok(gpu.device.create_buffer(&descriptor)))
+        gpu.watched(Task::Allocating, || Ok(gpu.device.create_buffer(&descriptor)))
     };
     let (from, to) = (
         buffer(BufferUsages::COPY_SRC | BufferUsages::COPY_DST)?,

@@ -7,7 +7,7 @@
 
 use super::pipelines::bind_resources;
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Resource};
 use crate::evaluate::storage;
 use bytemuck::{Pod, Zeroable};
 use std::collections::BTreeMap;
@@ -127,7 +127,7 @@ impl Blocks {
             }
             all.extend(list);
         }
-        let buffer = storage(gpu, "the blocks of all faces", &all)?;
+        let buffer = storage(gpu, Resource::Blocks, &all)?;
         let groups = pipelines.map(|p| bind_resources(gpu, p, 1, vec![(0, buffer.as_entire_binding())]));
         Ok(Self { groups, batches })
     }

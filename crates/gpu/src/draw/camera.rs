@@ -1,4 +1,4 @@
-//! Where one looks from, and what fits into the picture.
+//! The camera: where the eye is, and what fits into the picture.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 use std::str::FromStr;
@@ -7,6 +7,7 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
     #[default]
+    /// Without perspective.
     Orthographic,
     /// With an angle of 30° from the lower to the upper border.
     Perspective,
@@ -19,9 +20,19 @@ const FIELD_OF_VIEW: f64 = std::f64::consts::PI / 6.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
     /// From this direction, fitted to the model.
-    From { direction: DVec3, up: DVec3 },
+    From {
+        /// From the model to the eye.
+        direction: DVec3,
+        /// What is up in the picture.
+        up: DVec3,
+    },
     /// From `eye` to `target`, millimetres.
-    At { eye: DVec3, target: DVec3 },
+    At {
+        /// Where the eye is.
+        eye: DVec3,
+        /// Where it looks.
+        target: DVec3,
+    },
 }
 
 /// The named views: the direction from the model to the eye, and what is up.

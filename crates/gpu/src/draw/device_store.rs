@@ -2,7 +2,7 @@
 //! many sets as the limits of a binding ask for.
 
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Resource};
 use crate::evaluate::OnDevice;
 use crate::evaluate::storage;
 use crate::faces::inside::{TrimRange, TrimTable};
@@ -66,9 +66,9 @@ impl Pending {
         Ok(FaceStore {
             on_device: OnDevice::upload(gpu, &self.set)?,
             set: self.set,
-            pieces: storage(gpu, "the trimming curves", &self.trims.pieces)?,
-            lists: storage(gpu, "the bands of the trimming curves", &self.trims.lists)?,
-            cubics: storage(gpu, "the loops of all faces", &self.cubics)?,
+            pieces: storage(gpu, Resource::TrimmingCurves, &self.trims.pieces)?,
+            lists: storage(gpu, Resource::TrimmingBands, &self.trims.lists)?,
+            cubics: storage(gpu, Resource::Loops, &self.cubics)?,
         })
     }
 }

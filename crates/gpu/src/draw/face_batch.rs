@@ -14,7 +14,7 @@ use super::pipelines::{bind_group, bind_resources};
 use super::srgb::linear;
 use super::trim_texture::{TrimTexture, Trimmed};
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Resource};
 use crate::evaluate::storage;
 use crate::evaluate::{Evaluation, Wanted};
 use crate::faces::{TrimmedFace, grid};
@@ -133,7 +133,7 @@ impl FaceBatch {
         let mut buffers = evaluation.buffers();
         let (Some((points, _)), None) = (buffers.next(), buffers.next()) else {
             return Err(GpuError::TooLarge {
-                what: "the samples of some faces".into(),
+                what: Resource::FaceSamples,
                 bytes: (samples.len() * Wanted::Normals.stride() * size_of::<f32>()) as u64,
                 limit: gpu.binding_limit(),
                 adapter: gpu.name().into(),
@@ -144,8 +144,8 @@ impl FaceBatch {
             Trim::Exact => None,
             Trim::Texture => Some(plan.draw_trims(gpu, renderer, store, members)?),
         };
-        let faces = storage(gpu, "the faces", &plan.faces)?;
-        let places = storage(gpu, "the parameters of all grids", &plan.places)?;
+        let faces = storage(gpu, Resource::Faces, &plan.faces)?;
+        let places = storage(gpu, Resource::FaceParameters, &plan.places)?;
         let common = [(0, stage[0]), (1, stage[1]), (2, &faces), (3, points)];
         let mut trimmed: Vec<_> = common.iter().map(|(k, b)| (*k, b.as_entire_binding())).collect();
         trimmed.push((4, places.as_entire_binding()));

@@ -5,7 +5,7 @@ use super::options::Trim;
 use super::pipelines::pipeline;
 use super::trim_texture::TrimTextures;
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Task};
 use crate::evaluate::{KernelRunner, Search, Variant};
 use crate::shaders;
 use wgpu::RenderPipeline;
@@ -32,7 +32,7 @@ impl FaceRenderer {
             KernelRunner::new(gpu, Variant::Bernstein, Search::Host)?,
             KernelRunner::new(gpu, Variant::Direct, Search::Host)?,
         ];
-        gpu.watched("compiling shaders", || {
+        gpu.watched(Task::CompilingShaders, || {
             let of = |entries| pipeline(gpu, shaders::FACE, entries, &[]);
             Ok(Self {
                 evaluators,

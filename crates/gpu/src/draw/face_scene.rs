@@ -24,7 +24,7 @@ use super::view_data::{Standing, standing, view_data};
 use super::view_lines::ViewLines;
 use super::visible::{Frustum, Shown, Visible};
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Task};
 use crate::faces::TrimmedModel;
 use chordal_brep::Model;
 use chordal_mesh::Scene;
@@ -122,7 +122,7 @@ impl<'a> FaceScene<'a> {
         }
         // Lines are made for the view.
         scenery.shapes.iter_mut().for_each(|shape| shape.segments.clear());
-        gpu.watched("uploading the model", || {
+        gpu.watched(Task::UploadingModel, || {
             let (stores, locations) = upload_faces(gpu, &exact, gpu.binding_limit())?;
             Ok(Self {
                 standing: standing(&scenery),
@@ -212,7 +212,7 @@ impl<'a> FaceScene<'a> {
         if self.target.as_ref().is_none_or(|t| t.size != options.size) {
             self.target = Some(Target::new(gpu, options.size)?);
         }
-        gpu.watched("drawing", || {
+        gpu.watched(Task::Drawing, || {
             let kept = self.seen.take().filter(|seen| seen.options == *options);
             let seen = kept.unwrap_or_else(|| self.see(gpu, options));
             let Seen { visible, frustum, .. } = &seen;
@@ -266,7 +266,7 @@ impl<'a> FaceScene<'a> {
     pub(crate) fn read(&self, gpu: &Gpu, background: Background) -> Result<Picture, GpuError> {
         match &self.target {
             Some(target) => target.read(gpu, background),
-            None => Err(GpuError::Picture("nothing has been drawn".into())),
+            None => Err(GpuError::NothingDrawn),
         }
     }
 

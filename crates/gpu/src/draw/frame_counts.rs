@@ -6,11 +6,13 @@
 pub struct FrameCounts {
     /// Faces drawn, those of parts that are placed several times once for all placements that share samples.
     pub faces: usize,
-    /// Faces evaluated for this frame, and their points.
+    /// Faces evaluated for this frame.
     pub evaluated: usize,
+    /// Points of the faces evaluated for this frame.
     pub points: usize,
-    /// Faces beyond the picture, and faces that show their backs.
+    /// Faces beyond the picture.
     pub outside: usize,
+    /// Faces that show their backs.
     pub backs: usize,
     /// Placements beyond the picture.
     pub placements_outside: usize,

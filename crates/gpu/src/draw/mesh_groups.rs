@@ -3,7 +3,7 @@
 use super::pipelines::bind_group;
 use super::shapes::{Shape, Vertex};
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Resource};
 use crate::evaluate::storage;
 use bytemuck::Pod;
 use std::ops::Range;
@@ -48,8 +48,8 @@ impl Triangles {
             draws.push(TriangleDraw { shape, indices, base_vertex: base as i32 });
         }
         Ok(Self {
-            vertices: plain_buffer(gpu, "the vertices of one part", &vertices, BufferUsages::VERTEX)?,
-            indices: plain_buffer(gpu, "the triangles of one part", &triangles, BufferUsages::INDEX)?,
+            vertices: plain_buffer(gpu, Resource::Vertices, &vertices, BufferUsages::VERTEX)?,
+            indices: plain_buffer(gpu, Resource::Triangles, &triangles, BufferUsages::INDEX)?,
             draws,
         })
     }
@@ -80,7 +80,7 @@ impl Lines {
                 segments.extend_from_slice(&shapes[shape].segments);
                 draws.push((shape, first..6 * segments.len() as u32));
             }
-            let segments = storage(gpu, "the lines of one part", &segments)?;
+            let segments = storage(gpu, Resource::Lines, &segments)?;
             Ok(Self {
                 bound: bind_group(gpu, pipeline, &[(0, view), (1, placements), (2, &segments)]),
                 draws,
@@ -116,15 +116,20 @@ fn split(shapes: &[Shape], bytes: impl Fn(&Shape) -> usize, limit: u64) -> std::
 }
 
 /// A vertex or index buffer.
-fn plain_buffer<T: Pod>(gpu: &Gpu, what: &str, data: &[T], usage: BufferUsages) -> Result<Buffer, GpuError> {
+fn plain_buffer<T: Pod>(
+    gpu: &Gpu,
+    what: Resource,
+    data: &[T],
+    usage: BufferUsages,
+) -> Result<Buffer, GpuError> {
     let bytes: &[u8] = bytemuck::cast_slice(data);
     let limit = gpu.device.limits().max_buffer_size;
     if bytes.len() as u64 > limit {
         let adapter = gpu.name().into();
-        return Err(GpuError::TooLarge { what: what.into(), bytes: bytes.len() as u64, limit, adapter });
+        return Err(GpuError::TooLarge { what, bytes: bytes.len() as u64, limit, adapter });
     }
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(what),
+        label: Some(what.name()),
         size: bytes.len().max(64) as u64,
         usage: usage | BufferUsages::COPY_DST,
         mapped_at_creation: false,

@@ -14,7 +14,9 @@ use glam::{DVec2, DVec3};
 /// What the colours of a measured style mean, millimetres (error) or 1 / millimetres (curvature).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Legend {
+    /// The value at the lower end of the scale.
     pub low: f64,
+    /// The value at the upper end.
     pub high: f64,
 }
 

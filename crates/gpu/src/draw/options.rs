@@ -25,11 +25,14 @@ pub enum Style {
 pub enum Background {
     /// Linear red, green, blue.
     Color([f64; 3]),
+    /// Nothing.
     Transparent,
 }
 
 impl Background {
+    /// Pale grey.
     pub const LIGHT: Self = Self::Color([0.913, 0.922, 0.939]);
+    /// Dark grey.
     pub const DARK: Self = Self::Color([0.0080, 0.0091, 0.0130]);
 
     /// True where lines must be light to be seen.
@@ -62,7 +65,9 @@ impl std::str::FromStr for Background {
 /// What lies where `normal · p > offset` (millimetres) is cut away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionPlane {
+    /// The direction of what is cut away.
     pub normal: DVec3,
+    /// The distance of the plane from the origin along it.
     pub offset: f64,
 }
 
@@ -94,16 +99,21 @@ pub enum Normals {
 pub struct RenderOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Where the eye is.
     pub view: View,
+    /// How space becomes a picture.
     pub projection: Projection,
     /// Above 1: nearer.
     pub zoom: f64,
     /// Move a camera with a place of its own so that it sees everything; named views always do.
     pub fit: bool,
+    /// What is seen of the model.
     pub style: Style,
     /// Draw the lines of the style.
     pub lines: bool,
+    /// What is behind the model.
     pub background: Background,
+    /// The plane that cuts the model.
     pub section: Option<SectionPlane>,
     /// Of exact faces.
     pub trim: Trim,
@@ -133,39 +143,51 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
+    /// The options with a size in pixels.
     pub fn with_size(self, width: u32, height: u32) -> Self {
         Self { size: [width, height], ..self }
     }
+    /// The options with a view.
     pub fn with_view(self, view: View) -> Self {
         Self { view, ..self }
     }
+    /// The options with a projection.
     pub fn with_projection(self, projection: Projection) -> Self {
         Self { projection, ..self }
     }
+    /// The options with a zoom.
     pub fn with_zoom(self, zoom: f64) -> Self {
         Self { zoom, ..self }
     }
+    /// The options with or without moving the camera so that it sees everything.
     pub fn with_fit(self, fit: bool) -> Self {
         Self { fit, ..self }
     }
+    /// The options with a style.
     pub fn with_style(self, style: Style) -> Self {
         Self { style, ..self }
     }
+    /// The options with or without the lines of the style.
     pub fn with_lines(self, lines: bool) -> Self {
         Self { lines, ..self }
     }
+    /// The options with a background.
     pub fn with_background(self, background: Background) -> Self {
         Self { background, ..self }
     }
+    /// The options with or without a section.
     pub fn with_section(self, section: Option<SectionPlane>) -> Self {
         Self { section, ..self }
     }
+    /// The options with a way to trim exact faces.
     pub fn with_trim(self, trim: Trim) -> Self {
         Self { trim, ..self }
     }
+    /// The options with a way to light exact faces.
     pub fn with_normals(self, normals: Normals) -> Self {
         Self { normals, ..self }
     }
+    /// The options with or without leaving out what the picture cannot show.
     pub fn with_reject(self, reject: bool) -> Self {
         Self { reject, ..self }
     }

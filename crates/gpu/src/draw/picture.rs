@@ -6,8 +6,11 @@ use std::io::Cursor;
 /// Rows of pixels from the top, red, green, blue and opacity, not premultiplied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
+    /// Pixels in a row.
     pub width: u32,
+    /// Rows.
     pub height: u32,
+    /// The pixels, row by row.
     pub pixels: Vec<[u8; 4]>,
 }
 
@@ -15,9 +18,9 @@ impl Picture {
     /// As a PNG file.
     ///
     /// # Errors
-    /// [`GpuError::Picture`] for a picture without pixels.
+    /// [`GpuError::Png`] for a picture without pixels.
     pub fn to_png(&self) -> Result<Vec<u8>, GpuError> {
-        let fail = |e: png::EncodingError| GpuError::Picture(e.to_string());
+        let fail = |e: png::EncodingError| GpuError::Png(e.to_string());
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
         encoder.set_depth(png::BitDepth::Eight);
@@ -37,11 +40,11 @@ impl Picture {
     /// From a PNG file as [`Self::to_png`] writes it.
     ///
     /// # Errors
-    /// [`GpuError::Picture`] for other bytes.
+    /// [`GpuError::Png`] and [`GpuError::PixelFormat`] for other bytes.
     pub fn from_png(bytes: &[u8]) -> Result<Self, GpuError> {
-        let fail = |e: png::DecodingError| GpuError::Picture(e.to_string());
+        let fail = |e: png::DecodingError| GpuError::Png(e.to_string());
         let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().map_err(fail)?;
-        let size = reader.output_buffer_size().ok_or(GpuError::Picture("too large".into()))?;
+        let size = reader.output_buffer_size().ok_or(GpuError::Png("too large".into()))?;
         let mut data = vec![0; size];
         let info = reader.next_frame(&mut data).map_err(fail)?;
         data.truncate(info.buffer_size());
@@ -52,7 +55,7 @@ impl Picture {
             (png::ColorType::Rgba, png::BitDepth::Eight) => {
                 data.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect()
             }
-            _ => return Err(GpuError::Picture("neither RGB nor RGBA of 8 bits".into())),
+            _ => return Err(GpuError::PixelFormat),
         };
         Ok(Self { width: info.width, height: info.height, pixels })
     }

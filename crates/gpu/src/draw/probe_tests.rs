@@ -3,6 +3,7 @@
 use super::*;
 use crate::draw::face_normal::face_normal;
 use crate::draw::pipelines::{DEPTH, pipeline_into};
+use crate::error::Resource;
 use crate::evaluate::read_back;
 use crate::faces::TrimmedFace;
 use crate::test_support::models::{Meshed, meshed};
@@ -125,7 +126,8 @@ fn frame(
     let bytes = u64::from(row * SIZE[1]);
     let buffers = targets.each_ref().map(|target| {
         let buffer =
-            crate::evaluate::empty_storage(gpu, "numbers", bytes, wgpu::BufferUsages::empty()).unwrap();
+            crate::evaluate::empty_storage(gpu, Resource::Points, bytes, wgpu::BufferUsages::empty())
+                .unwrap();
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
         let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };

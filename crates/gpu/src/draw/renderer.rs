@@ -9,7 +9,7 @@ use super::shapes::Scenery;
 use super::target::Target;
 use super::view_data::{PlacementData, ViewData, standing, view_data};
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Resource, Task};
 use crate::evaluate::empty_storage;
 use crate::shaders;
 use chordal_mesh::Scene;
@@ -36,7 +36,7 @@ impl Renderer {
             attributes: &attributes,
         };
         let entries = ["vertex", "fragment"];
-        gpu.watched("compiling shaders", || {
+        gpu.watched(Task::CompilingShaders, || {
             Ok(Self {
                 faces: pipeline(gpu, shaders::MESH, entries, &[Some(corners)]),
                 lines: pipeline(gpu, shaders::LINES, entries, &[]),
@@ -57,7 +57,7 @@ impl Renderer {
     ) -> Result<Picture, GpuError> {
         let camera = options.camera(&scene_outline(scene));
         let target = Target::new(gpu, options.size)?;
-        gpu.watched("drawing", || {
+        gpu.watched(Task::Drawing, || {
             let stage = Stage::new(gpu, scenery.placed.len())?;
             let mut placed = vec![0..0; scenery.shapes.len()];
             let mut first = 0;
@@ -124,7 +124,7 @@ impl Stage {
             mapped_at_creation: false,
         });
         let bytes = (placements.max(1) * size_of::<PlacementData>()) as u64;
-        let placements = empty_storage(gpu, "the placements of all parts", bytes, BufferUsages::empty())?;
+        let placements = empty_storage(gpu, Resource::Placements, bytes, BufferUsages::empty())?;
         Ok(Self { view, placements })
     }
 

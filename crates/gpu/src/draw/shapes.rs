@@ -7,7 +7,9 @@ use glam::{DAffine3, DVec3};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Vertex {
+    /// Its position.
     pub position: [f32; 3],
+    /// The unit normal.
     pub normal: [f32; 3],
     /// sRGB and opacity; 0 of that marks the colour of a measured value, which no assembly overrides.
     pub color: [u8; 4],
@@ -22,7 +24,9 @@ pub struct Shape {
     pub middle: DVec3,
     /// Nothing of the part is further from the middle.
     pub radius: f64,
+    /// The corners of the triangles.
     pub vertices: Vec<Vertex>,
+    /// Triangles by their corners.
     pub triangles: Vec<[u32; 3]>,
     /// Ends of line segments, relative to `middle`.
     pub segments: Vec<[[f32; 3]; 2]>,
@@ -31,6 +35,7 @@ pub struct Shape {
 /// One placement of a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed {
+    /// The shape, by index.
     pub shape: usize,
     /// From the part's coordinates to millimetres.
     pub world: DAffine3,
@@ -41,6 +46,7 @@ pub struct Placed {
 /// Everything that is drawn. Shapes are stored once, however often they are placed.
 #[derive(Clone, Debug, Default)]
 pub struct Scenery {
+    /// The shapes.
     pub shapes: Vec<Shape>,
     /// Ordered by shape.
     pub placed: Vec<Placed>,

@@ -5,7 +5,7 @@ use super::picture::Picture;
 use super::pipelines::{COLOR, DEPTH, SAMPLES};
 use super::srgb::{linear, srgb};
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Task};
 use crate::evaluate::read_back;
 use wgpu::{BufferUsages, RenderPass};
 
@@ -23,10 +23,7 @@ impl Target {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if size.iter().any(|&s| s == 0 || s > limit) {
             let [width, height] = size;
-            return Err(GpuError::Picture(format!(
-                "{width} × {height} pixels are not between 1 and {limit} on {}",
-                gpu.name()
-            )));
+            return Err(GpuError::PictureSize { width, height, limit, adapter: gpu.name().into() });
         }
         let texture = |format, sample_count, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -41,7 +38,7 @@ impl Target {
             })
         };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        gpu.watched("making room for the picture", || {
+        gpu.watched(Task::Allocating, || {
             Ok(Self {
                 size,
                 samples: texture(COLOR, SAMPLES, attachment).create_view(&Default::default()),

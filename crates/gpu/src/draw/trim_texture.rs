@@ -13,7 +13,7 @@
 
 use super::pipelines::{bind_group, module};
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Resource};
 use crate::evaluate::storage;
 use crate::faces::Cubic;
 use crate::shaders;
@@ -158,7 +158,7 @@ impl TrimTextures {
         let resolved_view = resolved.create_view(&Default::default());
         let samples = texture(1, SAMPLES, attachment).create_view(&Default::default());
         let data: Vec<_> = slots.iter().map(|slot| slot_data(slot, page)).collect();
-        let slot_buffer = storage(gpu, "the rectangles of trim textures", &data)?;
+        let slot_buffer = storage(gpu, Resource::TrimRectangles, &data)?;
         let most = (gpu.binding_limit() as usize / size_of::<Fan>()).max(1);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         for layer in 0..layers {
@@ -178,7 +178,7 @@ impl TrimTextures {
             });
             pass.set_pipeline(&self.fans);
             for some in fans.chunks(most) {
-                let buffer = storage(gpu, "the fans of trim textures", some)?;
+                let buffer = storage(gpu, Resource::TrimFans, some)?;
                 let bound = [(0, cubics), (1, &buffer), (2, &slot_buffer)];
                 pass.set_bind_group(0, &bind_group(gpu, &self.fans, &bound), &[]);
                 pass.draw(0..3 * some.len() as u32, 0..1);

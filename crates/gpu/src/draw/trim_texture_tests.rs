@@ -1,6 +1,7 @@
 //! Trim textures against the exact test of the same loops.
 
 use super::*;
+use crate::error::Resource;
 use crate::evaluate::read_back;
 use crate::faces::inside::{TrimTable, inside};
 use crate::test_support::{gpu, no_gpu};
@@ -61,7 +62,7 @@ fn textures_hold_what_the_exact_test_says() {
         first += of_face.len() as u32;
         cubics.extend(of_face.iter().flat_map(Cubic::as_f32));
     }
-    let cubics = storage(gpu, "cubics", &cubics).unwrap();
+    let cubics = storage(gpu, Resource::Loops, &cubics).unwrap();
     let drawn = TrimTextures::new(gpu).draw(gpu, &faces, &cubics).unwrap();
     let layers = drawn.texture.depth_or_array_layers();
     assert!(drawn.slots.iter().map(|s| s.channel).max() == Some(3));

@@ -1,7 +1,7 @@
 //! The surfaces of a set as buffers on the device.
 
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{GpuError, Resource, Task};
 use crate::real::Real;
 use crate::surfaces::{Edit, SurfaceSet};
 use std::marker::PhantomData;
@@ -26,11 +26,11 @@ impl<R: Real> OnDevice<R> {
     /// [`GpuError::TooLarge`] where its control points or knots exceed what the device can bind at once, and
     /// what [`Gpu::watched`] gives.
     pub fn upload(gpu: &Gpu, set: &SurfaceSet<R>) -> Result<Self, GpuError> {
-        gpu.watched("uploading surfaces", || {
-            let spans = storage(gpu, "the knot spans", &set.spans)?;
-            let windows = storage(gpu, "the knots", &set.windows)?;
-            let net = storage(gpu, "the control points of the model", &set.net)?;
-            let bezier = storage(gpu, "the Bézier points of the model", &set.bezier)?;
+        gpu.watched(Task::UploadingSurfaces, || {
+            let spans = storage(gpu, Resource::KnotSpans, &set.spans)?;
+            let windows = storage(gpu, Resource::Knots, &set.windows)?;
+            let net = storage(gpu, Resource::ControlPoints, &set.net)?;
+            let bezier = storage(gpu, Resource::BezierPoints, &set.bezier)?;
             let bytes = [&spans, &windows, &net, &bezier].iter().map(|b| b.size()).sum();
             Ok(Self { spans, windows, net, bezier, bytes, real: PhantomData })
         })
@@ -48,7 +48,7 @@ impl<R: Real> OnDevice<R> {
     /// [`GpuError::NoSuchSurface`], [`GpuError::Lost`].
     pub fn update(&self, gpu: &Gpu, set: &SurfaceSet<R>, index: usize, edit: Edit) -> Result<u64, GpuError> {
         let entry = set.entries.get(index).ok_or(GpuError::NoSuchSurface(index))?;
-        gpu.watched("uploading a surface", || {
+        gpu.watched(Task::UploadingSurfaces, || {
             let mut sent = 0;
             if edit.points {
                 sent += send(gpu, &self.net, &set.net, entry.net_range());
@@ -73,7 +73,7 @@ fn send<T: bytemuck::Pod>(gpu: &Gpu, buffer: &Buffer, data: &[T], part: Range<us
 }
 
 /// A storage buffer that holds `data`; `what` names it in errors.
-pub(crate) fn storage<T: bytemuck::Pod>(gpu: &Gpu, what: &str, data: &[T]) -> Result<Buffer, GpuError> {
+pub(crate) fn storage<T: bytemuck::Pod>(gpu: &Gpu, what: Resource, data: &[T]) -> Result<Buffer, GpuError> {
     let bytes: &[u8] = bytemuck::cast_slice(data);
     let buffer = empty_storage(gpu, what, bytes.len() as u64, BufferUsages::empty())?;
     if !bytes.is_empty() {
@@ -85,16 +85,16 @@ pub(crate) fn storage<T: bytemuck::Pod>(gpu: &Gpu, what: &str, data: &[T]) -> Re
 /// A storage buffer of at least one vector; refused where it is too large to be bound.
 pub(crate) fn empty_storage(
     gpu: &Gpu,
-    what: &str,
+    what: Resource,
     bytes: u64,
     usage: BufferUsages,
 ) -> Result<Buffer, GpuError> {
     let limit = gpu.binding_limit();
     if bytes > limit {
-        return Err(GpuError::TooLarge { what: what.into(), bytes, limit, adapter: gpu.name().into() });
+        return Err(GpuError::TooLarge { what, bytes, limit, adapter: gpu.name().into() });
     }
     Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(what),
+        label: Some(what.name()),
         size: bytes.max(64),
         usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC | usage,
         mapped_at_creation: false,

@@ -1,6 +1,6 @@
 //! What one evaluation is: variant, wanted values, search; and the tables that it needs beside the surfaces.
 
-use crate::error::GpuError;
+use crate::error::{GpuError, Unsuitable};
 use crate::layout::{Params, Row};
 use crate::real::Real;
 use crate::samples::{RowTables, Samples};
@@ -25,6 +25,7 @@ impl Variant {
     /// All, the paper's first.
     pub const ALL: [Self; 5] = [Self::Packed, Self::Unpacked, Self::Indexed, Self::Direct, Self::Bernstein];
 
+    /// Its name, as in benchmarks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Packed => "packed",
@@ -98,12 +99,11 @@ impl<R: Real> Plan<R> {
         search: Search,
     ) -> Result<Self, GpuError> {
         let planes = wanted.planes();
-        let refuse = |what: &str| Err(GpuError::Device { doing: "planning".into(), reason: what.into() });
         if variant == Variant::Bernstein && !set.has_bezier() {
-            return refuse("the set was made without Bézier nets");
+            return Err(GpuError::Unsuitable(Unsuitable::NoBezierNets));
         }
         if search == Search::Device && matches!(variant, Variant::Packed | Variant::Unpacked) {
-            return refuse("copies of knots are made where spans are found on the host");
+            return Err(GpuError::Unsuitable(Unsuitable::SpansOnDevice));
         }
         let mut tables = match variant {
             Variant::Packed => RowTables::packed(set, samples, planes),

@@ -5,7 +5,7 @@ use super::on_device::OnDevice;
 use super::on_device::{empty_storage, storage};
 use super::plan::{Plan, Search, Variant, Wanted};
 use crate::device::Gpu;
-use crate::error::GpuError;
+use crate::error::{Capability, GpuError, Resource, Task};
 use crate::layout::Params;
 use crate::real::Real;
 use crate::samples::Samples;
@@ -39,10 +39,7 @@ impl<R: Real> KernelRunner<R> {
     /// [`GpuError::Lacks`] for double precision on a device without it, and what [`Gpu::watched`] gives.
     pub fn new(gpu: &Gpu, variant: Variant, search: Search) -> Result<Self, GpuError> {
         if R::WGSL == "f64" && !gpu.has_f64() {
-            return Err(GpuError::Lacks {
-                adapter: gpu.name().into(),
-                what: "double precision in shaders".into(),
-            });
+            return Err(GpuError::Lacks { adapter: gpu.name().into(), what: Capability::DoublePrecision });
         }
         let (passes, points) = match variant {
             Variant::Packed => (Some(shaders::BASIS_PACKED), shaders::TENSOR),
@@ -52,7 +49,7 @@ impl<R: Real> KernelRunner<R> {
             Variant::Bernstein => (None, shaders::BERNSTEIN),
         };
         let find = (search == Search::Device).then_some(shaders::FIND_SPANS);
-        gpu.watched("compiling kernels", || {
+        gpu.watched(Task::CompilingKernels, || {
             Ok(Self {
                 variant,
                 search,
@@ -80,7 +77,7 @@ impl<R: Real> KernelRunner<R> {
         samples: &Samples<R>,
         wanted: Wanted,
     ) -> Result<Evaluation<R>, GpuError> {
-        gpu.watched("preparing an evaluation", || {
+        gpu.watched(Task::PreparingEvaluation, || {
             let mut batches = Vec::new();
             let mut first = 0;
             for heads in batches_of(set, samples, (self.variant, wanted), gpu.binding_limit()) {
@@ -102,17 +99,16 @@ impl<R: Real> KernelRunner<R> {
         wanted: Wanted,
     ) -> Result<Batch, GpuError> {
         let plan = Plan::new(set, samples, self.variant, wanted, self.search)?;
-        let rows = storage(gpu, "the rows of all parameters", &plan.tables.rows)?;
-        let ts = storage(gpu, "all parameters", &samples.ts)?;
+        let rows = storage(gpu, Resource::Rows, &plan.tables.rows)?;
+        let ts = storage(gpu, Resource::Parameters, &samples.ts)?;
         let basis_bytes = 2 * (plan.tables.half * size_of::<R>()) as u64;
-        let basis =
-            empty_storage(gpu, "the basis functions of all rows", basis_bytes, BufferUsages::empty())?;
-        let heads = storage(gpu, "the grids", &samples.heads)?;
-        let tiles = storage(gpu, "the tiles of all grids", &samples.tiles)?;
+        let basis = empty_storage(gpu, Resource::BasisFunctions, basis_bytes, BufferUsages::empty())?;
+        let heads = storage(gpu, Resource::Grids, &samples.heads)?;
+        let tiles = storage(gpu, Resource::Tiles, &samples.tiles)?;
         let net = if self.variant == Variant::Bernstein { &surfaces.bezier } else { &surfaces.net };
         let last = if self.passes.is_some() { &basis } else { &ts };
         let bytes = (points.len() * wanted.stride() * size_of::<R>()) as u64;
-        let out = empty_storage(gpu, "the points", bytes, BufferUsages::VERTEX)?;
+        let out = empty_storage(gpu, Resource::Points, bytes, BufferUsages::VERTEX)?;
         let buffers = [
             (0, &heads),
             (1, &tiles),
@@ -146,8 +142,8 @@ impl<R: Real> KernelRunner<R> {
         (rows, ts, basis): (&Buffer, &Buffer, &Buffer),
     ) -> Result<Option<BindGroup>, GpuError> {
         let Some(passes) = &self.passes else { return Ok(None) };
-        let packs = storage(gpu, "packs", &plan.tables.packs)?;
-        let own = storage(gpu, "the knots of all rows", &plan.tables.windows)?;
+        let packs = storage(gpu, Resource::PackedRows, &plan.tables.packs)?;
+        let own = storage(gpu, Resource::KnotsOfRows, &plan.tables.windows)?;
         let buffers = match self.variant {
             Variant::Packed => vec![(2, &packs), (4, &own), (7, basis)],
             Variant::Unpacked => vec![(2, rows), (3, &surfaces.spans), (4, &own), (7, basis)],
@@ -165,9 +161,9 @@ impl<R: Real> KernelRunner<R> {
     ) -> Result<Option<BindGroup>, GpuError> {
         let Some(find) = &self.find else { return Ok(None) };
         let (directions, breaks) = set.search_tables();
-        let directions = storage(gpu, "the directions of all surfaces", &directions)?;
-        let breaks = storage(gpu, "all distinct knots", &breaks)?;
-        let parameters = storage(gpu, "all parameters", &samples.parameters)?;
+        let directions = storage(gpu, Resource::Directions, &directions)?;
+        let breaks = storage(gpu, Resource::DistinctKnots, &breaks)?;
+        let parameters = storage(gpu, Resource::Parameters, &samples.parameters)?;
         let buffers = [(0, &directions), (1, &breaks), (2, rows), (5, &parameters), (7, ts)];
         Ok(Some(bind(gpu, find, &buffers)))
     }
@@ -185,7 +181,7 @@ impl<R: Real> KernelRunner<R> {
     /// # Errors
     /// What [`Gpu::watched`] gives.
     pub fn run(&self, gpu: &Gpu, evaluation: &Evaluation<R>) -> Result<(), GpuError> {
-        gpu.watched("evaluating", || {
+        gpu.watched(Task::Evaluating, || {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             {
                 let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -297,6 +293,7 @@ impl<R: Real> Evaluation<R> {
 pub struct Evaluated<R> {
     /// Numbers per point.
     pub stride: usize,
+    /// All numbers, point by point.
     pub values: Vec<R>,
 }
 
@@ -366,7 +363,7 @@ pub(crate) fn read_back(gpu: &Gpu, buffer: &Buffer, bytes: u64) -> Result<Vec<u8
         usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
-    gpu.watched("reading results", || {
+    gpu.watched(Task::ReadingResults, || {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
         gpu.queue.submit([encoder.finish()]);
@@ -374,7 +371,7 @@ pub(crate) fn read_back(gpu: &Gpu, buffer: &Buffer, bytes: u64) -> Result<Vec<u8
         gpu.wait()?;
         let view = staging
             .get_mapped_range(..)
-            .map_err(|e| GpuError::Device { doing: "reading results".into(), reason: e.to_string() })?;
+            .map_err(|e| GpuError::Device { task: Task::ReadingResults, reason: e.to_string() })?;
         Ok(view.to_vec())
     })
 }

@@ -14,7 +14,7 @@ use crate::surfaces::SurfaceSet;
 /// The CPU twins, kernel by kernel as on the device: `wanted.stride()` numbers per point.
 ///
 /// # Errors
-/// [`GpuError::Device`] where the variant does not fit the set or the search.
+/// [`GpuError::Unsuitable`] where the variant does not fit the set or the search.
 pub fn evaluate_twin<R: Real>(
     set: &SurfaceSet<R>,
     samples: &Samples<R>,

@@ -21,11 +21,14 @@ use std::sync::Arc;
 pub struct TrimmedFace {
     /// The face's index in its part.
     pub face: usize,
+    /// The surface.
     pub surface: NurbsSurface,
+    /// How its parameters correspond to those of the model's surface.
     pub parameters: NurbsParameters,
     /// The box of native parameters that is the face's unit square.
     pub uv: UvBox,
     pub(crate) loops: Vec<Cubic>,
+    /// Whether the outside is against the surface's normal.
     pub reversed: bool,
     /// The face's own colour, linear.
     pub color: Option<Rgba>,
@@ -84,13 +87,16 @@ impl TrimmedFace {
 /// A part's exact faces, and those that have no exact NURBS form and stay meshed.
 #[derive(Clone, Debug, Default)]
 pub struct TrimmedPart {
+    /// The exact faces.
     pub faces: Vec<TrimmedFace>,
+    /// The other faces, by index.
     pub meshed: Vec<usize>,
 }
 
 /// A model's parts, in its order.
 #[derive(Clone, Debug, Default)]
 pub struct TrimmedModel {
+    /// The parts.
     pub parts: Vec<TrimmedPart>,
 }
 
