@@ -29,7 +29,7 @@ use crate::context::Context;
 use crate::findings::Log;
 use crate::unrolled::is_unrolled;
 use chordal_brep::{AuditIssue, Coedge, Loop};
-use chordal_nurbs::{Curve, DVec2, DVec3, Frame, Surface};
+use chordal_nurbs::{Curve, DVec2, DVec3, Frame, Surface, math};
 use rustc_hash::FxHashMap;
 use std::f64::consts::{PI, TAU};
 
@@ -246,19 +246,19 @@ impl Walk<'_, '_> {
         let (uv, off) = match self.chart.surface {
             Surface::Cylinder { frame, radius } => self.ring(frame, p, |_, z| z, |_| (*radius, 1.0)),
             Surface::Cone { frame, radius, half_angle } => {
-                self.ring(frame, p, |_, z| z, |v| (radius + v * half_angle.tan(), 1.0))
+                self.ring(frame, p, |_, z| z, |v| (radius + v * math::tan(*half_angle), 1.0))
             }
             Surface::Sphere { frame, radius } if *radius > 0.0 => {
-                self.ring(frame, p, |rho, z| z.atan2(rho), |v| (radius * v.cos(), *radius))
+                self.ring(frame, p, |rho, z| math::atan2(z, rho), |v| (radius * math::cos(v), *radius))
             }
             Surface::Torus { frame, major, minor } if major > minor && *minor > 0.0 => {
                 let v = |rho: f64, z: f64| {
-                    let angle = z.atan2(rho - major);
+                    let angle = math::atan2(z, rho - major);
                     angle + TAU * ((self.uv.y - angle) / TAU).round()
                 };
                 let (uv, _) = self.ring(frame, p, v, |_| (*major, *minor));
                 let local = frame.local(p);
-                let off = local.z.hypot(local.x.hypot(local.y) - major) - minor;
+                let off = math::hypot(local.z, math::hypot(local.x, local.y) - major) - minor;
                 (uv, off.abs() / minor.min(major - minor))
             }
             _ => {
@@ -282,12 +282,12 @@ impl Walk<'_, '_> {
         at: impl Fn(f64) -> (f64, f64),
     ) -> (DVec2, f64) {
         let local = frame.local(p);
-        let rho = local.x.hypot(local.y);
+        let rho = math::hypot(local.x, local.y);
         let v = v(rho, local.z);
         let (radius, speed) = at(v);
         // Beyond the apex of a cone the angle is that of the other side.
         let side = if radius < 0.0 { PI } else { 0.0 };
-        let angle = local.y.atan2(local.x) + side;
+        let angle = math::atan2(local.y, local.x) + side;
         let u = angle + TAU * ((self.uv.x - angle) / TAU).round();
         let off = (rho - radius.abs()).abs() / radius.abs().min(speed);
         (DVec2::new(u, v), off)

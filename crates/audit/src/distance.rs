@@ -201,6 +201,7 @@ fn halve(piece: &[DVec3], stack: &mut Vec<Piece>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     fn sphere(rings: usize, radius: f64) -> Vec<[DVec3; 3]> {
@@ -209,7 +210,7 @@ mod tests {
                 i as f64 * std::f64::consts::TAU / (2 * rings) as f64,
                 j as f64 * std::f64::consts::PI / rings as f64,
             );
-            DVec3::new(v.sin() * u.cos(), v.sin() * u.sin(), v.cos()) * radius
+            DVec3::new(math::sin(v) * math::cos(u), math::sin(v) * math::sin(u), math::cos(v)) * radius
         };
         (0..2 * rings)
             .flat_map(|i| (0..rings).map(move |j| (i, j)))

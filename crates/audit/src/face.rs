@@ -15,7 +15,7 @@ use crate::sampled::check_samples;
 use chordal_brep::issue::MeshDefect;
 use chordal_brep::{AuditIssue, Face, FaceGeometry, Loop};
 use chordal_mesh::{FaceMesh, Origin};
-use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceInverter};
+use chordal_nurbs::{DVec2, DVec3, Surface, SurfaceInverter, math};
 use rayon::prelude::*;
 
 /// Edges shorter than this share of the tolerance may turn by any angle: at singular points some always do.
@@ -241,7 +241,7 @@ fn check_triangles(
         against += sum.against;
         least = least.min(sum.least_cosine);
     }
-    found.audit.max_angle = least.clamp(-1.0, 1.0).acos();
+    found.audit.max_angle = math::acos(least.clamp(-1.0, 1.0));
     if found.degenerate > 0 {
         log.add(AuditIssue::DegenerateTriangles { triangles: found.degenerate });
     }

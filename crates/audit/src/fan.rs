@@ -21,7 +21,7 @@
 //! Not proven: that slope is sampled, because second derivatives say little of it at a pole; 1.5 times what
 //! was seen is used.
 
-use chordal_nurbs::{Component, DVec2, DVec3, Piece, SurfaceBounds, UvBox};
+use chordal_nurbs::{Component, DVec2, DVec3, Piece, SurfaceBounds, UvBox, math};
 
 /// One side of a triangle, as the prover sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,11 +81,11 @@ pub(crate) fn fan_bound(bounds: &SurfaceBounds<'_>, fan: &Fan, enough: f64, piec
             let Some(m) = (pb - pa).cross(n).try_normalize() else { continue };
             let shift = Along { bounds, n: m, origin: pa, parts }.segment(a, b, pieces);
             let leaning = if slope < 0.5 { along + 2.0 * slope * shift } else { f64::INFINITY };
-            let whole = along.hypot(shift);
+            let whole = math::hypot(along, shift);
             error = error.max(match side {
                 // What lies in the lens lies over the facet's plane, and on level ground only its height
                 // counts.
-                Side::Chord(sag) => one.segment(a, b, pieces).hypot(shift).min(leaning).max(sag),
+                Side::Chord(sag) => math::hypot(one.segment(a, b, pieces), shift).min(leaning).max(sag),
                 _ => leaning.min(whole),
             });
         }

@@ -22,7 +22,7 @@ use crate::findings::Log;
 use crate::halves::Half;
 use chordal_brep::{AuditIssue, Coedge, Face, Loop};
 use chordal_mesh::Origin;
-use chordal_nurbs::{Surface, UvBox};
+use chordal_nurbs::{Surface, UvBox, math};
 
 /// How far inside vertices may lie beyond the boundary in the chart, relative to its extent: rounding.
 const BEYOND: f64 = 1e-9;
@@ -118,7 +118,7 @@ fn is_on_both_sheets(chart: &Chart<'_>) -> bool {
         return false;
     }
     let near = 1e-6 * minor.abs();
-    let radii = || chart.mesh.corners.iter().map(|c| major + minor * c.uv.y.cos());
+    let radii = || chart.mesh.corners.iter().map(|c| major + minor * math::cos(c.uv.y));
     radii().any(|r| r > near) && radii().any(|r| r < -near)
 }
 

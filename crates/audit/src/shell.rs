@@ -5,6 +5,7 @@ use crate::findings::FaceFindings;
 use crate::halves::half_key;
 use crate::report::{Problem, ShellAudit, Subject};
 use chordal_brep::{AuditIssue, Loop};
+use chordal_nurbs::math;
 use rustc_hash::FxHashMap;
 
 /// What was found out about one shell.
@@ -122,6 +123,6 @@ fn describe(context: &Context<'_>, sign: i8, found: &mut ShellFindings) {
         add(AuditIssue::DuplicateTriangles { triangles: found.duplicates });
     }
     if audit.is_sound() && sign != 0 && audit.volume * f64::from(sign) < 0.0 {
-        add(AuditIssue::InsideOut { volume: audit.volume * context.options.millimetres.powi(3) });
+        add(AuditIssue::InsideOut { volume: audit.volume * math::powi(context.options.millimetres, 3) });
     }
 }

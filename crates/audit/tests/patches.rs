@@ -5,7 +5,7 @@
 
 use chordal_nurbs::{
     Curve, DVec2, DVec3, Facet, Frame, NurbsCurve3, NurbsSurface, Surface, SurfaceBounds, SurfaceInverter,
-    UvBox, chord_bound, facet_bound,
+    UvBox, chord_bound, facet_bound, math,
 };
 
 /// Mixed into all random numbers: CHORDAL_SEED hunts elsewhere.
@@ -37,7 +37,7 @@ impl Random {
     }
     /// Between 1/10^decades and 10^decades.
     fn scale(&mut self, decades: f64) -> f64 {
-        10f64.powf(decades * self.signed())
+        math::pow(10.0, decades * self.signed())
     }
 }
 
@@ -62,7 +62,7 @@ fn patch(random: &mut Random) -> Surface {
     let [n, m] = [ku.len() - degree[0] - 1, kv.len() - degree[1] - 1];
     let (x, y) = (random.vector(), random.vector());
     let far = random.vector() * if random.next() < 0.1 { 1e4 } else { 1.0 };
-    let noise = 10f64.powf(-3.0 * random.next());
+    let noise = math::pow(10.0, -3.0 * random.next());
     let mut points = Vec::with_capacity(n * m);
     for i in 0..n {
         for j in 0..m {
@@ -83,7 +83,7 @@ fn patch(random: &mut Random) -> Surface {
 /// A triangle of any size, not too thin, counter-clockwise.
 fn triangle(random: &mut Random) -> [DVec2; 3] {
     loop {
-        let size = 10f64.powf(-2.5 * random.next());
+        let size = math::pow(10.0, -2.5 * random.next());
         let corner = DVec2::new(random.next(), random.next()) * (1.0 - size);
         let uv: [DVec2; 3] =
             std::array::from_fn(|_| corner + DVec2::new(random.next(), random.next()) * size);
@@ -455,7 +455,7 @@ fn native(random: &mut Random, kind: usize) -> (&'static str, Surface, UvBox) {
         1 => {
             let half_angle = 1.4 * random.signed();
             // Away from the apex, on either side of it.
-            let room = 0.8 * radius / half_angle.tan().abs();
+            let room = 0.8 * radius / math::tan(half_angle).abs();
             let low = if half_angle > 0.0 { -room } else { 0.0 };
             let uv = UvBox::new(DVec2::new(start.x, low), DVec2::new(start.x + 2.5, low + room));
             ("cones", Surface::Cone { frame, radius, half_angle }, uv)

@@ -10,7 +10,7 @@ use chordal_brep::{
     Vertex, VertexId,
 };
 use chordal_mesh::{Corner, FaceMesh, Origin, PartMesh};
-use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface};
+use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface, math};
 use std::sync::Arc;
 
 const TOLERANCE: f64 = 0.02;
@@ -132,7 +132,7 @@ fn the_rest_of_a_sphere_in_place_of_a_cap_is_found() {
 /// The unit sphere with a loop that runs out along a chord and back.
 fn folded_loop() -> Part {
     let mut part = Part::default();
-    let (p, q) = (DVec3::X, DVec3::new(0.1_f64.cos(), 0.1_f64.sin(), 0.0));
+    let (p, q) = (DVec3::X, DVec3::new(math::cos(0.1), math::sin(0.1), 0.0));
     let curve = NurbsCurve3::new(1, vec![0.0, 0.0, 1.0, 2.0, 2.0], vec![p, q, p], None).unwrap();
     let at = vertex(&mut part, p);
     let fold = edge(&mut part, Curve::Nurbs(curve), Range::new(0.0, 2.0), [at, at]);
@@ -151,7 +151,7 @@ fn a_whole_sphere_for_a_sliver_is_found() {
     let mut mesh = mesh(&whole);
     // The samples of the edge, which no triangle uses.
     let first = mesh.positions.len() as u32;
-    mesh.positions.extend([DVec3::X, DVec3::new(0.1_f64.cos(), 0.1_f64.sin(), 0.0)]);
+    mesh.positions.extend([DVec3::X, DVec3::new(math::cos(0.1), math::sin(0.1), 0.0)]);
     mesh.origins.extend([Origin::Vertex(0), Origin::Edge { edge: 0, index: 1 }]);
     mesh.edges = vec![vec![first, first + 1, first]];
     expect("a sphere", &part, &mesh, "whole-surface");

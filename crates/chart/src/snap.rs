@@ -1,6 +1,6 @@
 //! Rounding of parameters to a grid, so that rounding errors never decide how triangles are connected.
 
-use chordal_nurbs::DVec2;
+use chordal_nurbs::{DVec2, math};
 
 /// A grid of parameters, finer than any measured length and coarser than rounding errors. Whatever decides
 /// how triangles are connected lies on this grid. Otherwise rounding would decide which of two points comes
@@ -21,8 +21,8 @@ impl Grid {
         // Extents are often powers of two. The factor keeps them away from the values at which the grid
         // changes.
         let quantum = |length: f64| {
-            let exponent = (0.7 * length).log2().floor();
-            if exponent.abs() < 900.0 { 2f64.powi(exponent as i32 - GRID_BITS) } else { 0.0 }
+            let exponent = math::log2(0.7 * length).floor();
+            if exponent.abs() < 900.0 { math::powi(2.0, exponent as i32 - GRID_BITS) } else { 0.0 }
         };
         Self { quantum: DVec2::new(quantum(extent.x), quantum(extent.y)) }
     }

@@ -2,7 +2,7 @@
 
 use chordal_brep::{FaceGeometry, Part};
 use chordal_mesh::{AnalyticFace, FaceMesh, PartMesh};
-use chordal_nurbs::{Surface, UvBox};
+use chordal_nurbs::{Surface, UvBox, math};
 
 /// One per face of the part: its elementary surface with the extents of its mesh.
 pub(crate) fn face_surfaces(part: &Part, mesh: &PartMesh) -> Vec<Option<AnalyticFace>> {
@@ -34,7 +34,7 @@ fn analytic(surface: &Surface, extent: UvBox) -> Option<AnalyticFace> {
         },
         Surface::Cone { frame, radius, half_angle } => {
             // Our v runs along the axis from where the radius is `radius`; the apex lies this far below.
-            let below = radius / half_angle.tan();
+            let below = radius / math::tan(half_angle);
             if !below.is_finite() {
                 return None;
             }

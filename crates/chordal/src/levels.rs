@@ -63,6 +63,7 @@ pub(crate) fn levels(mesh: &SewnMesh, count: usize) -> Vec<Level> {
 #[cfg(all(test, feature = "levels"))]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use chordal_sew::{SewTolerance, sew_mesh};
     use glam::DVec3;
 
@@ -79,7 +80,11 @@ mod tests {
                         f64::from(i) / f64::from(m) * 1.5,
                         f64::from(j) / f64::from(n) * std::f64::consts::TAU,
                     );
-                    positions.push(DVec3::new(a.cos() * b.cos(), a.cos() * b.sin(), side * a.sin()));
+                    positions.push(DVec3::new(
+                        math::cos(a) * math::cos(b),
+                        math::cos(a) * math::sin(b),
+                        side * math::sin(a),
+                    ));
                 }
             }
             positions.push(DVec3::Z * side);

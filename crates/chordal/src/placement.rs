@@ -1,6 +1,7 @@
 //! How often and how large the parts of a model are placed.
 
 use chordal_brep::Model;
+use chordal_nurbs::math;
 use glam::{DAffine3, DMat3};
 
 /// All placements of one part.
@@ -37,20 +38,21 @@ pub(crate) fn largest_scale(m: DMat3) -> f64 {
     let (xy, xz, yz) = (a.y_axis.x, a.z_axis.x, a.z_axis.y);
     let mean = (xx + yy + zz) / 3.0;
     let off = 2.0 * (xy * xy + xz * xz + yz * yz);
-    let p = (((xx - mean).powi(2) + (yy - mean).powi(2) + (zz - mean).powi(2) + off) / 6.0).sqrt();
+    let p =
+        ((math::square(xx - mean) + math::square(yy - mean) + math::square(zz - mean) + off) / 6.0).sqrt();
     // A uniform scale, up to rounding: the diagonal says it without the loss of the general formula.
     if p <= 1e-12 * mean {
         return mean.sqrt();
     }
     let b = (a - DMat3::from_diagonal(glam::DVec3::splat(mean))) * (1.0 / p);
-    let angle = (b.determinant() / 2.0).clamp(-1.0, 1.0).acos() / 3.0;
-    (mean + 2.0 * p * angle.cos()).sqrt()
+    let angle = math::acos((b.determinant() / 2.0).clamp(-1.0, 1.0)) / 3.0;
+    (mean + 2.0 * p * math::cos(angle)).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DQuat, DVec3};
+    use glam::DVec3;
     use proptest::prelude::*;
 
     proptest! {
@@ -59,7 +61,7 @@ mod tests {
         fn largest_scale_is_the_norm(
             axis in prop::array::uniform3(-1.0..1.0), turn in 0.0..6.0, scale in prop::array::uniform3(0.01..100.0),
         ) {
-            let turn = DQuat::from_axis_angle(DVec3::from(axis).try_normalize().unwrap_or(DVec3::X), turn);
+            let turn = math::rotation(DVec3::from(axis).try_normalize().unwrap_or(DVec3::X), turn);
             let m = DMat3::from_quat(turn) * DMat3::from_diagonal(DVec3::from(scale)) * DMat3::from_quat(turn.inverse());
             let expected = scale.iter().fold(0.0_f64, |a, b| a.max(*b));
             prop_assert!((largest_scale(m) - expected).abs() < 1e-7 * expected);

@@ -9,6 +9,7 @@ use chordal::mesh::Origin;
 use chordal::methods::strategy_named;
 use chordal::nurbs::DVec3;
 use chordal::{MeshOptions, Meshed, Mesher, Model, Tolerance};
+use chordal_nurbs::math;
 use std::path::PathBuf;
 
 /// A trim with few, long sides in the plane of parameters.
@@ -113,7 +114,7 @@ const DENSE: usize = 720;
 #[test]
 fn chords_pass_over_the_points_of_dense_polylines() {
     let on_ellipse = |k: usize| {
-        let (sine, cosine) = (std::f64::consts::TAU * (k % DENSE) as f64 / DENSE as f64).sin_cos();
+        let (sine, cosine) = math::sin_cos(std::f64::consts::TAU * (k % DENSE) as f64 / DENSE as f64);
         (0.5 + 0.4 * cosine, 0.5 + 0.25 * sine)
     };
     let points: Vec<(f64, f64)> = (0..=DENSE).map(on_ellipse).collect();

@@ -4,6 +4,7 @@ use chordal::Cancel;
 use chordal::brep::Model;
 use chordal::nurbs::{DAffine3, DVec3};
 use chordal::stages::{edge_box, part_uses, tight_box};
+use chordal_nurbs::math;
 use std::path::Path;
 
 fn model(name: &str) -> Model {
@@ -51,10 +52,10 @@ fn boxes_are_those_of_the_closed_forms() {
 #[test]
 fn boxes_turn_with_the_model() {
     for angle in [0.1, 0.7, 1.3] {
-        let turn = DAffine3::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), angle);
+        let turn = DAffine3::from_quat(math::rotation(DVec3::new(1.0, 2.0, -0.5).normalize(), angle));
         assert_near(size(&placed(model("spline_ball"), turn)), DVec3::splat(20.0), "a turned ball");
         let axis = turn.transform_vector3(DVec3::Z);
-        let reach = DVec3::AXES.map(|d| 2.0 * (20.0 * (1.0 - d.dot(axis).powi(2)).sqrt() + 6.0));
+        let reach = DVec3::AXES.map(|d| 2.0 * (20.0 * (1.0 - math::square(d.dot(axis))).sqrt() + 6.0));
         assert_near(size(&placed(model("torus_full"), turn)), DVec3::from_array(reach), "a turned torus");
     }
 }

@@ -7,7 +7,7 @@ use chordal_gpu::{
     DeviceChoice, FaceRenderer, FaceScene, FrameCounts, Gpu, GpuError, Picture, Projection, RenderOptions,
     Renderer, SectionPlane, Style, Trim, View, scene_outline, trimmed_model,
 };
-use chordal_nurbs::{DVec3, NurbsSurface};
+use chordal_nurbs::{DVec3, NurbsSurface, math};
 use common::models::{Meshed, meshed};
 use common::{gpu, no_gpu};
 use std::path::Path;
@@ -88,7 +88,7 @@ fn a_flight_shows_what_single_pictures_show() {
     let mut stage = Stage::new(gpu(), &outcome);
     let mut evaluated = 0;
     for step in 0..100 {
-        let options = small().with_zoom(1.04_f64.powi(step)).with_size(160, 120);
+        let options = small().with_zoom(math::powi(1.04, step)).with_size(160, 120);
         let (picture, counts) = stage.frame(&options);
         evaluated += counts.evaluated;
         if step % 33 == 32 {
@@ -160,7 +160,7 @@ fn moved(surface: &NurbsSurface, phase: f64) -> NurbsSurface {
     let points = surface
         .points()
         .iter()
-        .map(|p| *p + DVec3::Z * (0.1 * size * (4.0 * p.x / size + phase).sin()))
+        .map(|p| *p + DVec3::Z * (0.1 * size * math::sin(4.0 * p.x / size + phase)))
         .collect();
     let weights = surface.weights().map(<[f64]>::to_vec);
     NurbsSurface::new(
@@ -225,7 +225,7 @@ fn moved_knots_move_the_samples() {
     let domain = s.domain();
     let bent = |t: &f64| {
         let x = (t - domain.min.x) / domain.size().x;
-        domain.min.x + domain.size().x * (x + 0.25 * (x * std::f64::consts::PI).sin())
+        domain.min.x + domain.size().x * (x + 0.25 * math::sin(x * std::f64::consts::PI))
     };
     let knots = s.knots_u().iter().map(bent).collect();
     let weights = s.weights().map(<[f64]>::to_vec);

@@ -9,7 +9,7 @@ use chordal_gpu::{
     Background, FaceRenderer, FaceScene, Picture, Projection, RenderOptions, Renderer, SectionPlane, Style,
     Trim, View, mesh_scenery, trimmed_model,
 };
-use chordal_nurbs::DVec3;
+use chordal_nurbs::{DVec3, math};
 use common::models::{Meshed, meshed};
 use common::{gpu, no_gpu};
 use std::path::Path;
@@ -208,7 +208,7 @@ fn what_is_not_opaque_is_seen_through() {
             let (w, h) = (picture.width as usize, picture.height as usize);
             let middle = (0..32 * 32).map(|k| (h / 2 + k / 32) * w + w / 2 + k % 32);
             let mean = middle.map(|at| f64::from(picture.pixels[at][3])).sum::<f64>() / 1024.0 / 255.0;
-            let wanted = 1.0 - (1.0 - f64::from(opacity)).powi(2);
+            let wanted = 1.0 - math::square(1.0 - f64::from(opacity));
             assert!((mean - wanted).abs() < 0.03, "{mean} of {wanted}");
         }
     }

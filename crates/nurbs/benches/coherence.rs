@@ -1,6 +1,6 @@
 //! What reuse of basis functions and row sums saves on the vertices of a grid and of a kd-tree's leaves.
 
-use chordal_nurbs::{CoherentEvaluator, DVec2, DVec3, NurbsSurface};
+use chordal_nurbs::{CoherentEvaluator, DVec2, DVec3, NurbsSurface, math};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -13,7 +13,7 @@ fn knots(degree: usize) -> Vec<f64> {
 
 fn surface(p: usize, q: usize, rational: bool) -> NurbsSurface {
     let count = (p + 4) * (q + 4);
-    let point = |k: usize| DVec3::new((k as f64).cos(), (1.3 * k as f64).sin(), 0.1 * k as f64);
+    let point = |k: usize| DVec3::new(math::cos(k as f64), math::sin(1.3 * k as f64), 0.1 * k as f64);
     let weights = rational.then(|| (0..count).map(|k| 1.0 + 0.1 * (k % 5) as f64).collect());
     NurbsSurface::new([p, q], knots(p), knots(q), (0..count).map(point).collect(), weights).expect("legal")
 }

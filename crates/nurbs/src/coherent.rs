@@ -177,6 +177,7 @@ impl<'a> CoherentEvaluator<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
 
     fn knots(degree: usize) -> Vec<f64> {
         let mut knots = vec![0.0; degree + 1];
@@ -187,7 +188,8 @@ mod tests {
 
     fn surface(p: usize, q: usize, rational: bool) -> NurbsSurface {
         let count = (p + 3) * (q + 3);
-        let point = |k: usize| DVec3::new((k as f64).cos(), (1.3 * k as f64).sin(), 1e3 + 0.1 * k as f64);
+        let point =
+            |k: usize| DVec3::new(math::cos(k as f64), math::sin(1.3 * k as f64), 1e3 + 0.1 * k as f64);
         let weights = rational.then(|| (0..count).map(|k| 1.0 + 0.3 * (k % 5) as f64).collect());
         NurbsSurface::new([p, q], knots(p), knots(q), (0..count).map(point).collect(), weights)
             .expect("valid")

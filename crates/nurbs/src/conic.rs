@@ -1,6 +1,7 @@
 //! Lines, conics and broken lines in any dimension: a point and its first three derivatives by the parameter.
 
 use crate::Vector;
+use crate::math;
 
 /// A point with its first three derivatives.
 pub(crate) type Jet3<V> = [V; 4];
@@ -12,7 +13,7 @@ pub(crate) fn line<V: Vector>(o: V, d: V, t: f64) -> Jet3<V> {
 
 /// `o + cos t p + sin t q`.
 pub(crate) fn ellipse<V: Vector>(o: V, p: V, q: V, t: f64) -> Jet3<V> {
-    let (s, c) = t.sin_cos();
+    let (s, c) = math::sin_cos(t);
     let r = p * c + q * s;
     let d = q * c - p * s;
     [o + r, d, r * -1.0, d * -1.0]
@@ -25,7 +26,7 @@ pub(crate) fn parabola<V: Vector>(o: V, p: V, q: V, t: f64) -> Jet3<V> {
 
 /// `o + cosh t p + sinh t q`.
 pub(crate) fn hyperbola<V: Vector>(o: V, p: V, q: V, t: f64) -> Jet3<V> {
-    let (s, c) = (t.sinh(), t.cosh());
+    let (s, c) = (math::sinh(t), math::cosh(t));
     let r = p * c + q * s;
     let d = p * s + q * c;
     [o + r, d, r, d]

@@ -13,6 +13,7 @@
 //! where with `N/W` the old and `M/Z` the new curve `N/W − M/Z = ((N − M) − (M/Z)(W − Z)) / W`.
 
 use crate::homogeneous::Homogeneous;
+use crate::math;
 use crate::vector::largest;
 use crate::{BezierCurve, Vector, blossom};
 
@@ -103,7 +104,7 @@ fn least_squares<T: Vector>(net: &[T]) -> Vec<T> {
     let mut diagonal = vec![0.0; n];
     let mut right = vec![T::default(); n];
     for q in 1..n - 1 {
-        diagonal[q] = own(q).powi(2) + before(q + 1).powi(2);
+        diagonal[q] = math::square(own(q)) + math::square(before(q + 1));
         right[q] = rest(q) * own(q) + rest(q + 1) * before(q + 1);
     }
     for q in 2..n - 1 {

@@ -6,6 +6,7 @@
 //! piece is as small as rounding: there is a hit. As the curve lies in the convex hull of its coefficients,
 //! no root is missed, those of even order (where curve and line only touch) included.
 
+use crate::math;
 use crate::{BezierCurve, blossom};
 use glam::DVec2;
 
@@ -44,7 +45,7 @@ fn zeros(coefficients: &[f64], zero: f64) -> Vec<f64> {
     let mut hits: Vec<(f64, f64)> = Vec::new();
     let mut stack = vec![(coefficients.to_vec(), 0.0f64, 0u32)];
     while let Some((row, a, depth)) = stack.pop() {
-        let width = 0.5f64.powi(depth as i32);
+        let width = math::powi(0.5, depth as i32);
         if row.iter().all(|c| *c > zero) || row.iter().all(|c| *c < -zero) {
             continue;
         }
@@ -120,7 +121,7 @@ mod tests {
         let found = at(curve(&points, None).line_crossings(DVec2::ZERO, DVec2::X, 1e-13));
         assert_eq!(found.len(), n);
         for (k, f) in found.iter().rev().enumerate() {
-            let exact = 0.5 * (1.0 + ((2 * k + 1) as f64 * std::f64::consts::PI / (2 * n) as f64).cos());
+            let exact = 0.5 * (1.0 + math::cos((2 * k + 1) as f64 * std::f64::consts::PI / (2 * n) as f64));
             assert!((f - exact).abs() < 1e-10, "{f} {exact}");
         }
     }
@@ -132,9 +133,9 @@ mod tests {
             net in prop::collection::vec((-1.0f64..1.0, -1.0f64..1.0, -3.0f64..3.0), 2..=21),
             rational in any::<bool>(), angle in 0.0f64..3.2, offset in -0.3f64..0.3,
         ) {
-            let weights = rational.then(|| net.iter().map(|n| 10f64.powf(n.2)).collect());
+            let weights = rational.then(|| net.iter().map(|n| math::pow(10.0, n.2)).collect());
             let c = curve(&net.iter().map(|n| (n.0, n.1)).collect::<Vec<_>>(), weights);
-            let direction = DVec2::from_angle(angle);
+            let direction = math::direction(angle);
             let origin = direction.perp() * offset;
             let found = at(c.line_crossings(origin, direction, 1e-14));
             let side = |t: f64| direction.perp_dot(c.eval(t) - origin);

@@ -1,5 +1,6 @@
 //! One curve and one surface of each kind, for tests.
 
+use crate::math;
 use crate::*;
 use std::sync::Arc;
 
@@ -119,7 +120,11 @@ pub fn nurbs_surface() -> NurbsSurface {
     for i in 0..5 {
         for j in 0..4 {
             let (x, y) = (f64::from(i), f64::from(j));
-            points.push(DVec3::new(x * 2.0, y * 3.0 + 0.2 * x, (x * 1.3).sin() + (y * 0.9).cos() * 1.5));
+            points.push(DVec3::new(
+                x * 2.0,
+                y * 3.0 + 0.2 * x,
+                math::sin(x * 1.3) + math::cos(y * 0.9) * 1.5,
+            ));
             weights.push(1.0 + 0.3 * f64::from((i * 7 + j * 5) % 3));
         }
     }

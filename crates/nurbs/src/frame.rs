@@ -1,5 +1,6 @@
 //! Right-handed orthonormal placements.
 
+use crate::math;
 use glam::{DVec2, DVec3};
 
 /// A right-handed orthonormal placement in space.
@@ -45,7 +46,7 @@ impl Frame {
 
     /// The unit radial direction at `angle`.
     pub fn radial(&self, angle: f64) -> DVec3 {
-        let (s, c) = angle.sin_cos();
+        let (s, c) = math::sin_cos(angle);
         self.x * c + self.y * s
     }
 }

@@ -2,6 +2,7 @@
 //! unchanged.
 
 use crate::Vector;
+use crate::math;
 use std::ops::{Add, AddAssign, Mul, Sub};
 
 /// A point multiplied by its weight, and the weight.
@@ -54,7 +55,7 @@ impl<V: Vector> Vector for Homogeneous<V> {
         self.v.dot(other.v) + self.w * other.w
     }
     fn norm(self) -> f64 {
-        self.v.norm().hypot(self.w)
+        math::hypot(self.v.norm(), self.w)
     }
     fn all_finite(self) -> bool {
         self.v.all_finite() && self.w.is_finite()

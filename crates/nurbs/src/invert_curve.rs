@@ -8,6 +8,7 @@
 //! spacing.
 
 use crate::conic::{unwrapped, wrapped};
+use crate::math;
 use crate::{Curve, Range};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -58,10 +59,11 @@ impl<'a> CurveInverter<'a> {
             }
             Curve::Circle { frame, radius } => {
                 let local = frame.local(p_xyz);
-                let flat = local.x.hypot(local.y);
+                let flat = math::hypot(local.x, local.y);
                 let side = radius.signum();
                 let on_axis = flat <= ON_AXIS * (local.length() + radius.abs());
-                let t = if on_axis { near.unwrap_or(0.0) } else { (local.y * side).atan2(local.x * side) };
+                let t =
+                    if on_axis { near.unwrap_or(0.0) } else { math::atan2(local.y * side, local.x * side) };
                 self.angle(t, near, p_xyz)
             }
             _ => {
@@ -123,7 +125,9 @@ pub(crate) fn reach(curve: &Curve, p: DVec3, range: Range) -> Range {
             far(*origin, 0.0) / direction.length().max(f64::MIN_POSITIVE) + 1.0
         }
         Curve::Parabola { frame, focal } => (far(frame.origin, 0.0) / focal.abs()).sqrt() + 1.0,
-        Curve::Hyperbola { frame, a, b } => (far(frame.origin, a.abs()) / a.abs().min(b.abs())).asinh() + 1.0,
+        Curve::Hyperbola { frame, a, b } => {
+            math::asinh(far(frame.origin, a.abs()) / a.abs().min(b.abs())) + 1.0
+        }
         Curve::Offset { basis, distance, .. } => {
             let inner = reach(basis, p, range);
             let more = inner.length() * distance.abs() / p.distance(curve.point(0.0)).max(distance.abs());

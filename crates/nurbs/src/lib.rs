@@ -53,6 +53,7 @@ mod invert_curve;
 mod invert_surface;
 mod jet;
 mod knots;
+pub mod math;
 mod natural_border;
 mod nurbs_curve;
 mod nurbs_surface;

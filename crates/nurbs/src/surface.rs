@@ -13,6 +13,7 @@ pub use transform::TransformedSurface;
 
 use crate::conic::wrapped;
 use crate::curve::CLOSED;
+use crate::math;
 use crate::{Frame, NurbsSurface, Range, Surface, SurfaceJet, SurfaceKind, UvBox};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -29,14 +30,14 @@ impl Surface {
             Surface::Plane { frame: f } => f.origin + f.x * u + f.y * v,
             Surface::Cylinder { frame: f, radius } => f.origin + f.radial(u) * *radius + f.z * v,
             Surface::Cone { frame: f, radius, half_angle } => {
-                f.origin + f.radial(u) * (radius + v * half_angle.tan()) + f.z * v
+                f.origin + f.radial(u) * (radius + v * math::tan(*half_angle)) + f.z * v
             }
             Surface::Sphere { frame: f, radius } => {
-                let (s, c) = v.sin_cos();
+                let (s, c) = math::sin_cos(v);
                 f.origin + (f.radial(u) * c + f.z * s) * *radius
             }
             Surface::Torus { frame: f, major, minor } => {
-                let (s, c) = v.sin_cos();
+                let (s, c) = math::sin_cos(v);
                 f.origin + f.radial(u) * (major + minor * c) + f.z * (minor * s)
             }
             Surface::Extrusion { profile, direction } => profile.point(u) + *direction * v,
@@ -75,15 +76,15 @@ impl Surface {
             },
             Surface::Cylinder { frame, radius } => ring_jet(frame, u, [*radius, 0.0, 0.0], [v, 1.0, 0.0]),
             Surface::Cone { frame, radius, half_angle } => {
-                let slope = half_angle.tan();
+                let slope = math::tan(*half_angle);
                 ring_jet(frame, u, [radius + v * slope, slope, 0.0], [v, 1.0, 0.0])
             }
             Surface::Sphere { frame, radius: r } => {
-                let (s, c) = v.sin_cos();
+                let (s, c) = math::sin_cos(v);
                 ring_jet(frame, u, [r * c, -r * s, -r * c], [r * s, r * c, -r * s])
             }
             Surface::Torus { frame, major, minor: r } => {
-                let (s, c) = v.sin_cos();
+                let (s, c) = math::sin_cos(v);
                 ring_jet(frame, u, [major + r * c, -r * s, -r * c], [r * s, r * c, -r * s])
             }
             Surface::Extrusion { profile, direction } => swept::extrusion_jet(profile, *direction, p_uv),
@@ -104,7 +105,7 @@ impl Surface {
             Surface::Plane { frame } => Some(frame.z),
             Surface::Cylinder { frame, radius } => Some(frame.radial(u) * sign(*radius, 1.0)),
             Surface::Cone { frame, radius, half_angle } => {
-                let slope = half_angle.tan();
+                let slope = math::tan(*half_angle);
                 let n = frame.radial(u) - frame.z * slope;
                 let side = sign(*radius, slope.signum());
                 Some(n.normalize() * sign(radius + v * slope, side))
@@ -112,13 +113,13 @@ impl Surface {
             Surface::Sphere { frame, .. } => {
                 // Beyond the poles, where cos v < 0, the parametrisation is turned over. A negative radius
                 // turns both derivatives round, so that it has no effect on the normal.
-                let turned = if v.abs() > FRAC_PI_2 { v.cos().signum() } else { 1.0 };
-                Some((frame.radial(u) * v.cos() + frame.z * v.sin()) * turned)
+                let turned = if v.abs() > FRAC_PI_2 { math::cos(v).signum() } else { 1.0 };
+                Some((frame.radial(u) * math::cos(v) + frame.z * math::sin(v)) * turned)
             }
             Surface::Torus { frame, major, minor } => {
-                let outward = frame.radial(u) * v.cos() + frame.z * v.sin();
+                let outward = frame.radial(u) * math::cos(v) + frame.z * math::sin(v);
                 // On the axis the sum is nothing but rounding.
-                let rho = major + minor * v.cos();
+                let rho = major + minor * math::cos(v);
                 let rho = if rho.abs() <= ROUNDED * minor.abs() { 0.0 } else { rho };
                 Some(outward * sign(*minor, 1.0) * sign(rho, 1.0))
             }
@@ -233,7 +234,7 @@ fn sign(value: f64, at_zero: f64) -> f64 {
 
 /// The jet of `origin + ρ(v)(cos u x + sin u y) + h(v) z` from ρ and h with two derivatives each.
 fn ring_jet(f: &Frame, u: f64, rho: [f64; 3], h: [f64; 3]) -> SurfaceJet {
-    let (s, c) = u.sin_cos();
+    let (s, c) = math::sin_cos(u);
     let e = f.x * c + f.y * s;
     let t = f.y * c - f.x * s;
     SurfaceJet {

@@ -2,6 +2,7 @@
 
 mod common;
 
+use chordal_nurbs::math;
 use chordal_nurbs::*;
 use common::{Random, de_boor, lift, project};
 use proptest::prelude::*;
@@ -115,7 +116,7 @@ fn a_cyclic_surface_is_a_tube() {
     let (n, m, radius) = (10usize, 3usize, 2.0);
     let row = |i: usize| {
         let angle = std::f64::consts::TAU * i as f64 / n as f64;
-        (0..m).map(move |j| DVec3::new(radius * angle.cos(), radius * angle.sin(), j as f64))
+        (0..m).map(move |j| DVec3::new(radius * math::cos(angle), radius * math::sin(angle), j as f64))
     };
     let net: Vec<DVec3> = (0..n + 3).flat_map(|i| row(i % n)).collect();
     let tube = NurbsSurface::new([3, 2], uniform(3, n + 3), endpoint(2, m), net, None).expect("legal");

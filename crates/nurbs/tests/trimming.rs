@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+use chordal_nurbs::math;
 use chordal_nurbs::*;
 use common::*;
 use proptest::prelude::*;
@@ -148,7 +149,8 @@ fn collocated(samples: &[DVec3]) -> Vec<DVec3> {
     let mut rows: Vec<(Vec<f64>, DVec3)> = (0..=n)
         .map(|k| {
             let t = k as f64 / n as f64;
-            let basis = (0..=n).map(|i| binomial(i) * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32));
+            let basis =
+                (0..=n).map(|i| binomial(i) * math::powi(t, i as i32) * math::powi(1.0 - t, (n - i) as i32));
             (basis.collect(), samples[k])
         })
         .collect();

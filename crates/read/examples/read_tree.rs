@@ -1,6 +1,7 @@
 //! Prints the assembly tree of a file: `cargo run --release --example read_tree -- FILE…`
 
 use chordal_brep::{Model, NodeId};
+use chordal_nurbs::math;
 
 fn main() {
     for path in std::env::args().skip(1) {
@@ -28,7 +29,7 @@ fn print(model: &Model, id: NodeId, depth: usize) {
         "{:indent$}{:?} part {name:?}: {faces} faces, {colored} coloured; {bodies} bodies coloured; at {at}; scale {:.4}",
         "",
         node.name,
-        node.transform.matrix3.determinant().cbrt(),
+        math::cbrt(node.transform.matrix3.determinant()),
         indent = 2 * depth
     );
     for &child in &node.children {

@@ -1,6 +1,6 @@
 //! Where on a curve a vertex lies, and the range between two vertices.
 
-use chordal_nurbs::{Curve, DVec3, Range};
+use chordal_nurbs::{Curve, DVec3, Range, math};
 use std::f64::consts::TAU;
 
 /// A vertex this close to a free-form curve's end, relative to the curve's size, is taken for that end.
@@ -148,11 +148,11 @@ pub(crate) fn parameter_of(curve: &Curve, p: DVec3) -> f64 {
         Curve::Line { origin, direction } => (p - *origin).dot(*direction) / direction.length_squared(),
         Curve::Circle { frame, .. } => {
             let q = frame.local(p);
-            turn(q.y.atan2(q.x))
+            turn(math::atan2(q.y, q.x))
         }
         // On these two, y alone tells the parameter.
         Curve::Parabola { frame, focal } => frame.local(p).y / (2.0 * focal),
-        Curve::Hyperbola { frame, b, .. } => (frame.local(p).y / b).asinh(),
+        Curve::Hyperbola { frame, b, .. } => math::asinh(frame.local(p).y / b),
         Curve::Ellipse { .. } => turn(curve.invert(p, None)),
         _ => curve.invert(p, None),
     }

@@ -136,6 +136,7 @@ fn slow(text: &[u8]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::parse;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     #[test]
@@ -175,7 +176,7 @@ mod tests {
             prop_assume!(exact.is_finite());
             let text = format!("{exact:e}");
             prop_assert_eq!(parse(text.as_bytes()), Some((exact, text.len())));
-            let moderate = (bits as f64 / 1e19) * 10f64.powi(scale);
+            let moderate = (bits as f64 / 1e19) * math::powi(10.0, scale);
             let text = format!("{moderate:.decimals$}");
             prop_assert_eq!(parse(text.as_bytes()), Some((text.parse().expect("a number"), text.len())));
         }

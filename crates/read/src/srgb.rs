@@ -1,9 +1,11 @@
 //! Colours of files are the sRGB values that a screen shows; the model holds linear ones.
 
 /// The sRGB transfer function, undone.
+use chordal_nurbs::math;
+
 pub(crate) fn linear(value: f64) -> f32 {
     let value = value.clamp(0.0, 1.0);
-    (if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }) as f32
+    (if value <= 0.04045 { value / 12.92 } else { math::pow((value + 0.055) / 1.055, 2.4) }) as f32
 }
 
 #[cfg(test)]

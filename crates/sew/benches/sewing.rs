@@ -1,7 +1,7 @@
 //! Sewing of n loose patches of a wavy sheet, each with four edges of its own: what n log n looks like.
 
 use chordal_brep::{Face, FaceGeometry, Part, Source};
-use chordal_nurbs::{DVec3, NurbsSurface, Surface};
+use chordal_nurbs::{DVec3, NurbsSurface, Surface, math};
 use chordal_sew::{SewTolerance, sew_part};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// `side` × `side` biquadratic patches without loops.
 fn patches(side: usize) -> Part {
     let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-    let wave = |x: f64, y: f64| DVec3::new(x, y, 0.3 * (0.7 * x).sin() * (0.9 * y).cos());
+    let wave = |x: f64, y: f64| DVec3::new(x, y, 0.3 * math::sin(0.7 * x) * math::cos(0.9 * y));
     let face = |i: usize, j: usize| {
         let points = (0..9).map(|k| wave(i as f64 + (k / 3) as f64 / 2.0, j as f64 + (k % 3) as f64 / 2.0));
         let surface = NurbsSurface::new([2, 2], knots.clone(), knots.clone(), points.collect(), None);

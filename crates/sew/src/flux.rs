@@ -8,7 +8,7 @@
 
 use crate::uv_loops::{UvLoop, uv_loops};
 use chordal_brep::{Face, FaceGeometry, Part};
-use chordal_nurbs::{DVec2, DVec3, Surface};
+use chordal_nurbs::{DVec2, DVec3, Surface, math};
 use rayon::prelude::*;
 
 /// Gauss–Legendre nodes and weights on 0..1.
@@ -94,7 +94,7 @@ pub(crate) fn volume(part: &Part, faces: &[usize], origin: DVec3) -> Option<(f64
 
 /// How many times faces wind around a point: about ±1 inside, 0 outside.
 pub(crate) fn winding(part: &Part, faces: &[usize], p: DVec3) -> Option<f64> {
-    let field = |q: DVec3| (q - p) / (q - p).length().powi(3);
+    let field = |q: DVec3| (q - p) / math::powi((q - p).length(), 3);
     let of_face = |&f: &usize| flux(part, &part.faces[f], PIECES, field);
     let parts: Option<Vec<f64>> = faces.par_iter().with_min_len(64).map(of_face).collect();
     parts.map(|p| p.iter().sum::<f64>() / (4.0 * std::f64::consts::PI))

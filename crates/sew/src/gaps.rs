@@ -10,7 +10,7 @@ use crate::foot::foot;
 use crate::natural::add_natural_borders;
 use crate::polygon::add_polygon_edges;
 use chordal_brep::Part;
-use chordal_nurbs::Box3;
+use chordal_nurbs::{Box3, math};
 use rayon::prelude::*;
 
 /// No joint of a part is wider than this share of its diagonal.
@@ -143,13 +143,16 @@ pub(crate) fn choose_below(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64
 }
 
 fn histogram(gaps: &[f64], resolution: f64) -> Vec<GapBin> {
-    let floor = 10_f64.powf(resolution.log10().floor() - 3.0);
-    let decade = |g: f64| if g < floor { f64::NEG_INFINITY } else { g.log10().floor() };
+    let floor = math::pow(10.0, math::log10(resolution).floor() - 3.0);
+    let decade = |g: f64| if g < floor { f64::NEG_INFINITY } else { math::log10(g).floor() };
     gaps.chunk_by(|a, b| decade(*a) == decade(*b))
         .map(|chunk| {
             let low = decade(chunk[0]);
-            let (from, below) =
-                if low.is_finite() { (10_f64.powf(low), 10_f64.powf(low + 1.0)) } else { (0.0, floor) };
+            let (from, below) = if low.is_finite() {
+                (math::pow(10.0, low), math::pow(10.0, low + 1.0))
+            } else {
+                (0.0, floor)
+            };
             GapBin { from, below, count: chunk.len() }
         })
         .collect()
@@ -176,7 +179,7 @@ mod tests {
 
     #[test]
     fn without_a_valley_the_file_is_taken_at_its_word() {
-        let gaps: Vec<f64> = (0..60).map(|i| 1e-4 * 1.2_f64.powi(i)).collect();
+        let gaps: Vec<f64> = (0..60).map(|i| 1e-4 * math::powi(1.2, i)).collect();
         let found = choose(&gaps, Some(2e-4), 100.0);
         assert!(!found.clear);
         assert_eq!(found.tolerance, 2e-4);

@@ -3,7 +3,7 @@
 use chordal_brep::{
     BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, Loop, Part, Source, Vertex, VertexId,
 };
-use chordal_nurbs::{Curve, DVec3, Frame, Range, Surface};
+use chordal_nurbs::{Curve, DVec3, Frame, Range, Surface, math};
 use chordal_sew::{SewReport, SewTolerance, sew_part};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -176,7 +176,7 @@ fn partial_overlaps_are_cut_on_both_sides() {
 fn three_faces_meet_at_an_edge() {
     let mut islands = Islands::default();
     for angle in [0.0, 2.0, 4.0] {
-        let far = DVec3::new(0.0, f64::cos(angle), f64::sin(angle));
+        let far = DVec3::new(0.0, math::cos(angle), math::sin(angle));
         islands.polygon(&[DVec3::ZERO, DVec3::X, DVec3::X + far, far], false);
     }
     let (part, report) = islands.sew(1e-6);

@@ -1,7 +1,8 @@
 //! Sewing of triangle meshes along their borders.
 
+use chordal_nurbs::math;
 use chordal_sew::{MeshSewReport, SewTolerance, SewnMesh, sew_mesh};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use proptest::prelude::*;
 
 /// Separate meshes as one soup.
@@ -71,17 +72,17 @@ fn volume(mesh: &SewnMesh) -> f64 {
 fn auto_tells_the_chords_of_a_curve_from_its_openings() {
     let mut soup = Soup::default();
     let turn = std::f64::consts::TAU;
-    soup.grid(40, 3, false, |s, t| DVec3::new((turn * s).cos(), (turn * s).sin(), 2.0 * t));
+    soup.grid(40, 3, false, |s, t| DVec3::new(math::cos(turn * s), math::sin(turn * s), 2.0 * t));
     for (z, n) in [(0.0, 33_u32), (2.0, 47)] {
         let first = soup.positions.len() as u32;
         soup.positions.push(DVec3::Z * z);
         let rim = (0..n).map(|i| turn * (f64::from(i) + 0.3) / f64::from(n));
-        soup.positions.extend(rim.map(|a| DVec3::new(a.cos(), a.sin(), z)));
+        soup.positions.extend(rim.map(|a| DVec3::new(math::cos(a), math::sin(a), z)));
         soup.triangles.extend((0..n).map(|i| [first, first + 1 + i, first + 1 + (i + 1) % n]));
     }
     let (mesh, report) = sew_mesh(&soup.positions, &soup.triangles, SewTolerance::Auto, Some(1e-9));
     assert_eq!((report.open_after, report.closed_shells), (0, 1), "{report:?}");
-    let sag = 1.0 - (0.5 * turn / 33.0).cos();
+    let sag = 1.0 - math::cos(0.5 * turn / 33.0);
     assert!(report.tolerance >= sag && report.tolerance < 8.0 * sag, "{report:?}");
     assert!(report.largest_move <= report.tolerance);
     assert!((volume(&mesh).abs() / turn - 1.0).abs() < 0.02, "{}", volume(&mesh));
@@ -132,7 +133,7 @@ fn gaps_wider_than_the_tolerance_stay_open() {
 fn three_sheets_meet_in_a_line_and_are_tracked_at_once() {
     let mut soup = Soup::default();
     for (i, angle) in [0.0, 2.0, 4.0].into_iter().enumerate() {
-        let turn = DQuat::from_rotation_x(angle);
+        let turn = math::rotation(DVec3::X, angle);
         soup.grid(3 + i, 4, false, |s, t| turn * DVec3::new(s, t + 1e-4 * i as f64, 0.0));
     }
     let (mesh, report) = soup.sew(1e-3);
@@ -159,7 +160,7 @@ fn a_sheet_rolled_into_a_tube_is_sewn_to_itself() {
     let mut soup = Soup::default();
     soup.grid(40, 5, false, |s, t| {
         let angle = 0.002 + s * (std::f64::consts::TAU - 0.004);
-        DVec3::new(angle.cos(), angle.sin(), t)
+        DVec3::new(math::cos(angle), math::sin(angle), t)
     });
     let (_, report) = soup.sew(0.01);
     // Two stretches: the border begins in one of its corners.
@@ -191,8 +192,8 @@ proptest! {
         m in 2_usize..30, n in 2_usize..30, bend in 0.0..0.5_f64,
         jitter in prop::collection::vec(-1.0..1.0_f64, 40), turned in any::<bool>(),
     ) {
-        let curve = |t: f64| DVec3::new(bend * (3.0 * t).sin(), t, bend * t * t);
-        let sag = 9.0 * bend / 8.0 / (m.min(n) as f64).powi(2);
+        let curve = |t: f64| DVec3::new(bend * math::sin(3.0 * t), t, bend * t * t);
+        let sag = 9.0 * bend / 8.0 / math::square(m.min(n) as f64);
         let tolerance = 3.0 * sag + 2e-3;
         prop_assume!(tolerance < 0.4 / m.max(n) as f64);
         let wobble = |t: f64, k: usize| {

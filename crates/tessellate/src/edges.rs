@@ -19,7 +19,7 @@ use crate::limits::Limits;
 use crate::trace::Trace;
 use chordal_brep::{Edge, MeshIssue, Part};
 use chordal_chart::{EdgeSamples, Near, settled};
-use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, bisect};
+use chordal_nurbs::{Curve, CurveInverter, CurveJet, DVec2, DVec3, Range, bisect, math};
 
 /// One edge as a polyline, with what its sampling found out.
 #[derive(Clone, Debug, Default)]
@@ -440,7 +440,7 @@ impl Probes {
 fn own_rate(curve: &Curve, jet: &CurveJet, limits: &Limits) -> f64 {
     if let Curve::Circle { radius, .. } = curve {
         let cosine = (1.0 - limits.tolerance / radius).max(-0.5);
-        return 1.0 / (2.0 * cosine.acos());
+        return 1.0 / (2.0 * math::acos(cosine));
     }
     let speed = jet.d1.length();
     if speed > 0.0 { (jet.d1.cross(jet.d2).length() / (8.0 * limits.tolerance * speed)).sqrt() } else { 0.0 }

@@ -1,7 +1,7 @@
 //! What a mesh must keep: lengths and angles in the units of the part, and how a facet is judged by them.
 
 use chordal_brep::Part;
-use chordal_nurbs::DVec3;
+use chordal_nurbs::{DVec3, math};
 
 /// How the error of a facet is judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,7 +45,7 @@ pub(crate) fn turns_too_far(n: DVec3, m: DVec3, limit: f64) -> bool {
     limit < std::f64::consts::PI
         && n != DVec3::ZERO
         && m != DVec3::ZERO
-        && n.dot(m) < (limit * (1.0 + 1e-9)).cos() - 1e-12
+        && n.dot(m) < math::cos(limit * (1.0 + 1e-9)) - 1e-12
 }
 
 /// Points nearer to each other than this share of the tolerance are one point: poles, vertices on them,

@@ -3,7 +3,7 @@
 
 use crate::limits::Limits;
 use chordal_chart::{SeamMetric, Seams};
-use chordal_nurbs::{DVec2, DVec3, SurfaceJet};
+use chordal_nurbs::{DVec2, DVec3, SurfaceJet, math};
 
 /// A symmetric positive semi-definite form on parameter space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -107,16 +107,16 @@ impl Sizing {
         let (l, m, k) = (n.dot(jet.duu), n.dot(jet.duv), n.dot(jet.dvv));
         let s11 = l / (a * a);
         let s12 = (m - s11 * a * b) / (a * h);
-        let s22 = (k - 2.0 * (b / a) * m + (b / a).powi(2) * l) / (h * h);
+        let s22 = (k - 2.0 * (b / a) * m + math::square(b / a) * l) / (h * h);
         // Principal curvatures and their directions.
         let mean = 0.5 * (s11 + s22);
         let half = 0.5 * (s11 - s22);
-        let radius = half.hypot(s12);
+        let radius = math::hypot(half, s12);
         let (k1, k2) = (mean + radius, mean - radius);
         let (cosine, sine) = if radius > 0.0 { (half / radius, s12 / radius) } else { (1.0, 0.0) };
         let size = |k: f64| {
             let by_sag = k.abs() / (8.0 * limits.tolerance);
-            let by_angle = (k.abs().min(1.0 / distance) / limits.angle).powi(2);
+            let by_angle = math::square(k.abs().min(1.0 / distance) / limits.angle);
             by_sag.max(by_angle).max(1.0 / (limits.length * limits.length))
         };
         let (m1, m2) = (size(k1), size(k2));

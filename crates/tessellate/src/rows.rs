@@ -12,7 +12,7 @@
 use crate::limits::Limits;
 use crate::metric::Sizing;
 use chordal_chart::{Chart, FaceSurface, settled};
-use chordal_nurbs::{DVec2, UvBox};
+use chordal_nurbs::{DVec2, UvBox, math};
 
 /// The share of an allowed chord that is used. The curvature varies over a triangle, and a triangle that
 /// fails costs more than the few that a smaller share adds.
@@ -216,7 +216,7 @@ impl<'a, 's> Placer<'a, 's> {
             heights.sort_by(f64::total_cmp);
             let strips = match heights.get(heights.len() / 4) {
                 Some(&height) => {
-                    let spread = (heights[heights.len() - 1] / heights[0]).ln();
+                    let spread = math::ln(heights[heights.len() - 1] / heights[0]);
                     let share = (high - low) / GRID as f64 / height;
                     plan.unevenness += spread.min(LARGEST_SPREAD) * share;
                     weight += share;

@@ -33,13 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn sphere(rings: u32) -> PartMesh {
     let mut positions = vec![DVec3::Z];
     for ring in 1..rings {
-        let (height, radius) = (
-            (PI * f64::from(ring) / f64::from(rings)).cos(),
-            (PI * f64::from(ring) / f64::from(rings)).sin(),
-        );
+        let (radius, height) = libm::sincos(PI * f64::from(ring) / f64::from(rings));
         positions.extend((0..rings).map(|i| {
-            let angle = TAU * f64::from(i) / f64::from(rings);
-            DVec3::new(radius * angle.cos(), radius * angle.sin(), height)
+            let (sine, cosine) = libm::sincos(TAU * f64::from(i) / f64::from(rings));
+            DVec3::new(radius * cosine, radius * sine, height)
         }));
     }
     positions.push(-DVec3::Z);

@@ -21,7 +21,7 @@ pub(crate) fn clamped(color: Rgba) -> Rgba {
 /// The standard transfer function (IEC 61966-2-1), linear to sRGB.
 pub(crate) fn srgb(linear: f32) -> f64 {
     let c = f64::from(linear);
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 }
 }
 
 /// sRGB bytes with opacity.

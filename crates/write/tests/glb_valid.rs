@@ -193,7 +193,12 @@ fn a_moved_mesh_does_not_move_the_children_of_its_node() {
     let away = DVec3::new(1e5, 2e5, 3e5);
     let mut scene = single(part("p", box_mesh(away, away + 1.0)), DAffine3::IDENTITY);
     scene.nodes[0].children = vec![1];
-    scene.nodes.push(node("child", DAffine3::from_rotation_z(1.0), Some(0), &[]));
+    scene.nodes.push(node(
+        "child",
+        DAffine3::from_quat(glam::DQuat::from_xyzw(0.0, 0.0, 0.6, 0.8)),
+        Some(0),
+        &[],
+    ));
     let glb = glb(&scene, &WriteOptions::new(Format::Glb));
     // The child is a leaf and takes the move into its own matrix; its parent's mesh gets a node of its own.
     assert_eq!(glb.list("nodes").len(), 3);

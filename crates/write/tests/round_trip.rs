@@ -87,7 +87,7 @@ fn sixty_four_bit_formats_round_nothing() {
 fn closed_parts_stay_closed_and_outside_out_also_mirrored() {
     let scene = assembly();
     let solid = Scene { parts: scene.parts.clone(), ..scene };
-    let wanted = 3.0 * 1.2 * 4.0 * 0.3 * 25.4_f64.powi(3);
+    let wanted = 3.0 * 1.2 * 4.0 * 0.3 * 25.4 * 25.4 * 25.4;
     for format in FORMATS {
         let soup = round_trip(&solid, &WriteOptions::new(format)).into_millimetres_z_up();
         // The sheet has four open edges, and its cone to the origin some volume of its own.

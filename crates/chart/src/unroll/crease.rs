@@ -13,7 +13,7 @@
 
 use super::Unroll;
 use crate::keys::{ChartPoint, Key, Segment};
-use chordal_nurbs::{DVec2, UvBox};
+use chordal_nurbs::{DVec2, UvBox, math};
 use std::collections::BTreeMap;
 
 /// Points this share of the face away from the line may be put on it, where that moves them by less than the resolution.
@@ -334,7 +334,7 @@ impl Cutter {
     fn turn(&self, step: &Step, next: &Step) -> f64 {
         let at = |i: usize| self.points[i].uv;
         let (back, ahead) = (at(step.from) - at(step.to), at(next.to) - at(next.from));
-        let angle = ahead.angle_to(back);
+        let angle = math::angle_to(ahead, back);
         if angle <= 0.0 { angle + std::f64::consts::TAU } else { angle }
     }
 }

@@ -8,7 +8,7 @@ use super::{Unroll, along_axis, mean, shifted};
 use crate::keys::{ChartPoint, Key, Segment};
 use crate::trimmed_face::OpenLoop;
 use chordal_brep::MeshIssue;
-use chordal_nurbs::DVec2;
+use chordal_nurbs::{DVec2, math};
 
 /// So many of the shortest straight cuts are tried before the cut is led through holes.
 const STRAIGHT_CUTS: usize = 2000;
@@ -336,7 +336,7 @@ fn straight_cuts(a: &OpenLoop, b: &OpenLoop, turn: DVec2, lengths: DVec2) -> Vec
             let d = b.points[j].uv - a.points[i].uv;
             let turns = -whole_turns(d, turn);
             let d = d + turn * turns;
-            candidates.push(((d.x * lengths.x).powi(2) + (d.y * lengths.y).powi(2), i, j, turns));
+            candidates.push((math::square(d.x * lengths.x) + math::square(d.y * lengths.y), i, j, turns));
         }
     }
     candidates.sort_by(|x, y| x.0.total_cmp(&y.0));

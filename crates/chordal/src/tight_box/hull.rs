@@ -1,6 +1,6 @@
 //! Step 2: how far a whole surface can reach, whatever its trims.
 
-use chordal_nurbs::{DVec3, Surface};
+use chordal_nurbs::{DVec3, Surface, math};
 
 /// True where the trimmed surface may reach beyond its own border.
 pub(super) fn bulges(surface: &Surface) -> bool {
@@ -12,7 +12,7 @@ pub(super) fn bulges(surface: &Surface) -> bool {
 
 /// The largest value of `gradient · p` over the whole surface; infinite where no simple bound is known.
 pub(super) fn support(surface: &Surface, gradient: DVec3) -> f64 {
-    let across = |axis: DVec3| (gradient.length_squared() - gradient.dot(axis).powi(2)).max(0.0).sqrt();
+    let across = |axis: DVec3| (gradient.length_squared() - math::square(gradient.dot(axis))).max(0.0).sqrt();
     match surface {
         Surface::Sphere { frame, radius } => gradient.dot(frame.origin) + radius.abs() * gradient.length(),
         Surface::Torus { frame, major, minor } => {

@@ -6,7 +6,7 @@ use chordal_gpu::{
     Background, FaceRenderer, FaceScene, Gpu, GpuError, PIXEL_ERROR, RenderOptions, Renderer, Style, View,
     trimmed_model,
 };
-use chordal_nurbs::{DVec3, NurbsSurface};
+use chordal_nurbs::{DVec3, NurbsSurface, math};
 use std::time::Instant;
 
 /// After a frame of so many seconds the larger scenes are left out.
@@ -48,7 +48,7 @@ pub fn by_surfaces(gpu: &Gpu) -> Result<(), GpuError> {
         let (mut frame, mut evaluated, began) = (0, 0, Instant::now());
         while frame < 20 && (frame == 0 || began.elapsed().as_secs_f64() < 1.0) {
             frame += 1;
-            let nearer = options.with_zoom(1.02_f64.powi(frame));
+            let nearer = options.with_zoom(math::powi(1.02, frame));
             evaluated += renderer.draw_faces(gpu, &exact, &mut shown, &nearer)?.evaluated;
             gpu.wait()?;
         }
@@ -153,7 +153,7 @@ pub fn by_grids(gpu: &Gpu) -> Result<(), GpuError> {
 
 /// The surface a little higher and lower.
 fn swaying(sheet: &NurbsSurface, frame: u32) -> NurbsSurface {
-    let height = 1.0 + 0.05 * (0.3 * f64::from(frame)).sin();
+    let height = 1.0 + 0.05 * math::sin(0.3 * f64::from(frame));
     let points = sheet.points().iter().map(|p| DVec3::new(p.x, p.y, p.z * height)).collect();
     let weights = sheet.weights().map(<[f64]>::to_vec);
     let knots = (sheet.knots_u().to_vec(), sheet.knots_v().to_vec());

@@ -4,7 +4,7 @@
 use crate::evaluation::surface;
 use chordal_brep::{Face, FaceGeometry, Model, Node, NodeId, Part, PartId, Source};
 use chordal_mesh::{Corner, FaceMesh, Origin, PartMesh, Scene, ScenePart};
-use chordal_nurbs::{DAffine3, DVec2, DVec3, NurbsSurface, Surface};
+use chordal_nurbs::{DAffine3, DVec2, DVec3, NurbsSurface, Surface, math};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ impl Scenario {
     fn loops() -> [Vec<DVec2>; 2] {
         let circle = |radius: f64, sign: f64| -> Vec<DVec2> {
             let at = |k: usize| sign * TAU * k as f64 / CORNERS as f64;
-            (0..CORNERS).map(|k| DVec2::splat(0.5) + radius * DVec2::from_angle(at(k))).collect()
+            (0..CORNERS).map(|k| DVec2::splat(0.5) + radius * math::direction(at(k))).collect()
         };
         [circle(RADII[0], 1.0), circle(RADII[1], -1.0)]
     }
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!((model.parts.len(), scene.placements().len()), (2, 2));
         let faces: Vec<&FaceMesh> = scene.parts.iter().flat_map(|p| &p.mesh.faces).collect();
         assert_eq!(faces.len(), 32);
-        let polygon = |radius: f64| 0.5 * CORNERS as f64 * (TAU / CORNERS as f64).sin() * radius * radius;
+        let polygon = |radius: f64| 0.5 * CORNERS as f64 * math::sin(TAU / CORNERS as f64) * radius * radius;
         for (index, face) in faces.into_iter().enumerate() {
             let areas: Vec<f64> = face
                 .triangles

@@ -1,5 +1,6 @@
 //! The camera: where the eye is, and what fits into the picture.
 
+use chordal_nurbs::math;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 use std::str::FromStr;
 
@@ -108,7 +109,7 @@ impl Camera {
         let view_of = to_view(origin);
         let aspect = f64::from(size[0]) / f64::from(size[1]);
         let (half, depth) = extent(points, &view_of, aspect);
-        let slope = (0.5 * FIELD_OF_VIEW).tan();
+        let slope = math::tan(0.5 * FIELD_OF_VIEW);
         let margin = 1.05 / zoom;
         let perspective = projection == Projection::Perspective;
         let distance = match view {

@@ -171,7 +171,7 @@ impl TrimmedFace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use chordal_nurbs::{DVec3, NurbsSurface};
+    use chordal_nurbs::{DVec3, NurbsSurface, math};
 
     #[test]
     fn choices_serve_while_they_are_fine_enough_and_not_too_fine() {
@@ -196,7 +196,7 @@ mod tests {
         let mut face =
             TrimmedFace::whole(NurbsSurface::new([1, 1], knots.clone(), knots, net, None).unwrap());
         let at = |k: u32| {
-            DVec2::splat(0.5) + 0.4 * DVec2::from_angle(std::f64::consts::TAU * f64::from(k % 500) / 500.0)
+            DVec2::splat(0.5) + 0.4 * math::direction(std::f64::consts::TAU * f64::from(k % 500) / 500.0)
         };
         face.loops = (0..500).map(|k| Cubic::line(at(k), at(k + 1))).collect();
         face = face.with_border();
@@ -213,14 +213,14 @@ mod tests {
     /// A choice serves all errors between those that it reports, and the one it was made for.
     #[test]
     fn errors_served_are_served() {
-        let net = |i: usize, j: usize| DVec3::new(i as f64, j as f64, ((i * j) as f64).sin());
+        let net = |i: usize, j: usize| DVec3::new(i as f64, j as f64, math::sin((i * j) as f64));
         let points = (0..16).map(|k| net(k / 4, k % 4)).collect();
         let knots = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
         let surface = NurbsSurface::new([3, 3], knots.clone(), knots, points, None).unwrap();
         let face = TrimmedFace::whole(surface);
         let mut open = 0;
         for step in 0..60 {
-            let error = 0.3 * 0.83_f64.powi(step);
+            let error = 0.3 * math::powi(0.83, step);
             for made in [Choice::of(&face, error), Choice::of(&face, error).with_reserve(&face)] {
                 for textured in [false, true] {
                     let [low, high] = made.errors_served(&face, textured);
@@ -233,7 +233,7 @@ mod tests {
                         "{low} {error} {high}"
                     );
                     for k in 0..=20 {
-                        let at = low * (high.min(1e3) / low).powf(f64::from(k) / 20.0);
+                        let at = low * math::pow(high.min(1e3) / low, f64::from(k) / 20.0);
                         assert!(
                             made.serves(&Choice::of(&face, at), textured),
                             "{made:?} at {at}, {textured}"

@@ -1,6 +1,6 @@
 //! What is painted on faces: curvature of the exact surface, distance of the mesh from it.
 
-use chordal_nurbs::{DVec2, DVec3, Surface};
+use chordal_nurbs::{DVec2, DVec3, Surface, math};
 
 /// The mean curvature at `uv` for the unit normal given; `None` where the surface has no tangent plane.
 pub(crate) fn mean_curvature(surface: &Surface, uv: DVec2, normal: DVec3) -> Option<f64> {
@@ -9,7 +9,7 @@ pub(crate) fn mean_curvature(surface: &Surface, uv: DVec2, normal: DVec3) -> Opt
     let (l, m, n) = (jet.duu.dot(normal), jet.duv.dot(normal), jet.dvv.dot(normal));
     let area = e * g - f * f;
     // Towards a pole the area element vanishes; what is left of it there are rounding errors.
-    let regular = area > 1e-12 * (e.max(g)).powi(2);
+    let regular = area > 1e-12 * math::square(e.max(g));
     // A convex outside bends away from its normal.
     regular.then(|| -(e * n - 2.0 * f * m + g * l) / (2.0 * area)).filter(|h| h.is_finite())
 }

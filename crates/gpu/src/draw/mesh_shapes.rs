@@ -8,7 +8,7 @@ use super::srgb::srgb;
 use crate::faces::TrimmedModel;
 use chordal_brep::{FaceGeometry, Model, Part};
 use chordal_mesh::{FaceMesh, Rgba, Scene, ScenePart};
-use chordal_nurbs::Surface;
+use chordal_nurbs::{Surface, math};
 use glam::{DVec2, DVec3};
 
 /// What the colours of a measured style mean, millimetres (error) or 1 / millimetres (curvature).
@@ -48,7 +48,7 @@ pub(crate) fn scenery_of(
     // Of every part the length of its unit, as first placed.
     let mut units = vec![1.0; scene.parts.len()];
     for alike in placed.chunk_by(|a, b| a.shape == b.shape) {
-        units[alike[0].shape] = alike[0].world.matrix3.determinant().abs().cbrt();
+        units[alike[0].shape] = math::cbrt(alike[0].world.matrix3.determinant().abs());
     }
     let mut painted: Vec<(Shape, Vec<f64>)> = scene
         .parts
@@ -149,7 +149,7 @@ fn furthest(points: Vec<DVec3>) -> Vec<DVec3> {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let spiral = (0..DIRECTIONS).map(|k| {
         let z = 1.0 - 2.0 * (k as f64 + 0.5) / DIRECTIONS as f64;
-        (DVec2::from_angle(golden * k as f64) * (1.0 - z * z).sqrt()).extend(z)
+        (math::direction(golden * k as f64) * (1.0 - z * z).sqrt()).extend(z)
     });
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|a| [a, -a]);
     let directions: Vec<DVec3> = spiral.chain(axes).collect();
@@ -348,8 +348,8 @@ mod tests {
     fn what_reaches_furthest_is_kept() {
         let at = |k: f64| {
             let z = 1.0 - 2.0 * k / 60_000.0;
-            (DVec2::from_angle(2.4 * k) * (1.0 - z * z).sqrt()).extend(0.3 * z)
-                * (0.9 + 0.1 * (0.7 * k).sin())
+            (math::direction(2.4 * k) * (1.0 - z * z).sqrt()).extend(0.3 * z)
+                * (0.9 + 0.1 * math::sin(0.7 * k))
         };
         let all: Vec<DVec3> = (0..60_000).map(|k| DVec3::splat(1e4) + at(f64::from(k))).collect();
         let kept = furthest(all.clone());

@@ -9,7 +9,7 @@ use crate::faces::TrimmedFace;
 use crate::test_support::models::{Meshed, meshed};
 use crate::test_support::{gpu, no_gpu};
 use crate::{Camera, Normals, Real, SurfaceSet, shaders, trimmed_model};
-use chordal_nurbs::{DVec2, Surface};
+use chordal_nurbs::{DVec2, Surface, math};
 use glam::DMat3;
 use wgpu::{RenderPipeline, TextureFormat, TextureUsages};
 
@@ -221,10 +221,10 @@ fn normals_of_pixels_are_those_of_the_surface() {
                     continue;
                 };
                 let wanted = (turn(&outcome, &camera, pixel.part) * n).normalize();
-                let angle = wanted.angle_between(pixel.normal);
+                let angle = math::angle_between(wanted, pixel.normal);
                 let at = (pixel.face, pixel.spot);
                 assert!(k == 1 || angle <= bound, "{name}: {angle} of {bound} at {at:?}");
-                let of_twin = n.angle_between(pixel.twin);
+                let of_twin = math::angle_between(n, pixel.twin);
                 assert!(of_twin <= bound, "{name}, twin: {of_twin} of {bound} at {at:?}");
                 worst[k] = worst[k].max(angle);
             }
@@ -265,7 +265,7 @@ fn normals_of_a_sphere_are_those_that_its_pixels_look_at() {
         }
         let wanted = off.extend(depth.sqrt());
         let normal = pixel.normal * pixel.normal.z.signum();
-        let angle = wanted.angle_between(normal);
+        let angle = math::angle_between(wanted, normal);
         assert!(angle <= camera.pixel / radius / depth.sqrt(), "{angle} at {:?}", pixel.pixel);
         compared += 1;
     }

@@ -1,13 +1,15 @@
 //! The transfer function of sRGB (IEC 61966-2-1).
 
 /// Linear light of an sRGB value, both 0..=1.
+use chordal_nurbs::math;
+
 pub(crate) fn linear(srgb: f64) -> f64 {
-    if srgb <= 0.04045 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
+    if srgb <= 0.04045 { srgb / 12.92 } else { math::pow((srgb + 0.055) / 1.055, 2.4) }
 }
 
 /// The sRGB value of linear light, both 0..=1.
 pub(crate) fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * math::pow(linear, 1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

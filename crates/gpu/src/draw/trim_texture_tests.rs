@@ -5,6 +5,7 @@ use crate::error::Resource;
 use crate::evaluate::read_back;
 use crate::faces::inside::{TrimTable, inside};
 use crate::test_support::{gpu, no_gpu};
+use chordal_nurbs::math;
 use glam::DVec2;
 
 /// A circle of four quarters.
@@ -30,7 +31,7 @@ fn zoo() -> Vec<Vec<Cubic>> {
     let middle = DVec2::splat(0.5);
     let star: Vec<[f64; 2]> = (0..5)
         .map(|k| {
-            (middle + 0.48 * DVec2::from_angle(4.0 * std::f64::consts::PI * f64::from(k) / 5.0)).to_array()
+            (middle + 0.48 * math::direction(4.0 * std::f64::consts::PI * f64::from(k) / 5.0)).to_array()
         })
         .collect();
     let mut found = vec![

@@ -5,6 +5,7 @@ use super::camera::Camera;
 use super::choice::PIXEL_ERROR;
 use super::shapes::Scenery;
 use crate::faces::TrimmedFace;
+use chordal_nurbs::math;
 use glam::{DAffine3, DVec3, DVec4};
 use std::ops::Range;
 
@@ -70,7 +71,7 @@ impl Frustum {
             Eye::At(eye) => {
                 let (middle, radius) = (0.5 * (low + high), 0.5 * low.distance(high));
                 let to_eye = eye - middle;
-                radius < to_eye.length() && cone.turns_away(to_eye, (radius / to_eye.length()).asin())
+                radius < to_eye.length() && cone.turns_away(to_eye, math::asin(radius / to_eye.length()))
             }
         }
     }
@@ -197,7 +198,8 @@ impl Visible {
         let (camera, start) = (&frustum.camera, self.order.len() as u32);
         let (low, high) = seen.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), s| (l.min(s.0), h.max(s.0)));
         let classes = high > CLASS * low;
-        let class_of = |error: f64| if classes { (error.ln() / CLASS.ln()).floor() as i32 } else { i32::MAX };
+        let class_of =
+            |error: f64| if classes { (math::ln(error) / math::ln(CLASS)).floor() as i32 } else { i32::MAX };
         if classes {
             // Nearest first, which also spares work on what they hide.
             seen.sort_by(|a, b| a.0.total_cmp(&b.0));

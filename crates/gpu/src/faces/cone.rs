@@ -7,7 +7,7 @@
 //! √(sin²α + sin²β + 2 sin α sin β |cos θ|) / sin θ, θ the angle between a and b: the sine of its angle to a
 //! × b. (Sederberg and Meyers 1988 bound normals in the same way.)
 
-use chordal_nurbs::{DVec3, NurbsSurface};
+use chordal_nurbs::{DVec3, NurbsSurface, math};
 
 /// Directions within `angle` (radians) of a unit vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ impl Cone {
     fn of(legs: impl Iterator<Item = DVec3> + Clone) -> Option<Self> {
         let directions = legs.filter_map(DVec3::try_normalize);
         let axis = directions.clone().sum::<DVec3>().try_normalize()?;
-        let angle = directions.map(|d| d.angle_between(axis)).fold(0.0, f64::max) + ROUNDING;
+        let angle = directions.map(|d| math::angle_between(d, axis)).fold(0.0, f64::max) + ROUNDING;
         (angle < std::f64::consts::FRAC_PI_2).then_some(Self { axis, angle })
     }
 
@@ -37,7 +37,7 @@ impl Cone {
     /// True where every direction of the cone is at more than a right angle to all directions within `spread`
     /// of `to_eye`.
     pub fn turns_away(&self, to_eye: DVec3, spread: f64) -> bool {
-        to_eye.angle_between(self.axis) > std::f64::consts::FRAC_PI_2 + self.angle + spread
+        math::angle_between(to_eye, self.axis) > std::f64::consts::FRAC_PI_2 + self.angle + spread
     }
 }
 
@@ -52,11 +52,11 @@ pub fn normal_cone(surface: &NurbsSurface) -> Option<Cone> {
     let along_u = (0..rows - 1).flat_map(move |i| (0..columns).map(move |j| at(i + 1, j) - at(i, j)));
     let along_v = (0..rows).flat_map(move |i| (0..columns - 1).map(move |j| at(i, j + 1) - at(i, j)));
     let (u, v) = (Cone::of(along_u)?, Cone::of(along_v)?);
-    let theta = u.axis.angle_between(v.axis);
-    let (a, b) = (u.angle.sin(), v.angle.sin());
-    let sine = (a * a + b * b + 2.0 * a * b * theta.cos().abs()).sqrt() / theta.sin();
+    let theta = math::angle_between(u.axis, v.axis);
+    let (a, b) = (math::sin(u.angle), math::sin(v.angle));
+    let sine = (a * a + b * b + 2.0 * a * b * math::cos(theta).abs()).sqrt() / math::sin(theta);
     let axis = u.axis.cross(v.axis).try_normalize()?;
-    (sine < 1.0).then(|| Cone { axis, angle: sine.asin() + ROUNDING })
+    (sine < 1.0).then(|| Cone { axis, angle: math::asin(sine) + ROUNDING })
 }
 
 /// True where the weights are positive and w_ij = r_i c_j but for rounding.
@@ -105,7 +105,7 @@ mod tests {
             for k in 0..400 {
                 let uv = DVec2::new((k % 20) as f64 / 19.0, (k / 20) as f64 / 19.0);
                 let (_, du, dv) = surface.jet1(uv);
-                assert!(du.cross(dv).angle_between(cone.axis) <= cone.angle, "{seed} {uv}");
+                assert!(math::angle_between(du.cross(dv), cone.axis) <= cone.angle, "{seed} {uv}");
             }
         }
         assert!(found > 30, "{found}");
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn a_cone_turns_away_beyond_its_angle() {
         let cone = Cone { axis: DVec3::Z, angle: 0.2 };
-        let to = |below: f64| DVec3::new(below.cos(), 0.0, -below.sin());
+        let to = |below: f64| DVec3::new(math::cos(below), 0.0, -math::sin(below));
         assert!(!cone.turns_away(to(0.19), 0.0) && cone.turns_away(to(0.21), 0.0));
         assert!(!cone.turns_away(to(0.21), 0.05) && cone.towards(DVec3::NEG_Z).axis.z == -1.0);
     }

@@ -159,6 +159,7 @@ impl Cubic {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
 
     #[test]
     fn pieces_rise_and_share_their_ends() {
@@ -177,7 +178,7 @@ mod tests {
 
     #[test]
     fn chains_run_from_end_to_end() {
-        let at = |k: usize| DVec2::from_angle(k as f64);
+        let at = |k: usize| math::direction(k as f64);
         let loop_of = |first: usize| (0..7).map(move |k| Cubic::line(at(first + k), at(first + (k + 1) % 7)));
         let mut pieces: Vec<Cubic> = loop_of(0).chain(loop_of(20)).collect();
         pieces.swap(1, 9);

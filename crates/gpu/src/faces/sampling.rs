@@ -5,6 +5,7 @@
 //! mixed term has been shared between the squares: 2 h k m ≤ m (r h² + k²/r) with r the ratio of the two.
 
 use super::model::TrimmedFace;
+use chordal_nurbs::math;
 
 /// Points of one face at most; a view that needs more shows the difference only where the face fills it
 /// many times.
@@ -36,7 +37,7 @@ pub(crate) fn errors_served(face: &TrimmedFace, steps: [f64; 2]) -> [f64; 2] {
         return [f64::INFINITY, 0.0];
     }
     let of = |axis: usize| {
-        let least = (proportions(face)[axis] / steps[axis]).powi(2);
+        let least = math::square(proportions(face)[axis] / steps[axis]);
         [least, if steps[axis] <= 2.0 { f64::INFINITY } else { 4.0 * least }]
     };
     let ([a, b], [c, d]) = (of(0), of(1));

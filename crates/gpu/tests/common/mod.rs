@@ -4,7 +4,7 @@
 pub mod models;
 
 use chordal_gpu::{DeviceChoice, Gpu, GpuError};
-use chordal_nurbs::{DVec3, NurbsSurface};
+use chordal_nurbs::{DVec3, NurbsSurface, math};
 use std::io::Write;
 use std::sync::OnceLock;
 
@@ -62,11 +62,11 @@ pub fn knots(random: &mut Random, degree: usize, spans: usize, at: f64) -> Vec<f
     let mut inner = Vec::new();
     let mut t = at;
     for _ in 1..spans {
-        t += 10_f64.powf(-3.0 * random.next());
+        t += math::pow(10.0, -3.0 * random.next());
         let times = 1 + if random.below(4) == 0 { random.below(degree.min(3)) } else { 0 };
         inner.extend(std::iter::repeat_n(t, times));
     }
-    t += 10_f64.powf(-3.0 * random.next());
+    t += math::pow(10.0, -3.0 * random.next());
     let clamped = random.below(3) > 0;
     let step = |k: usize| if clamped { 0.0 } else { 0.1 * k as f64 };
     let before = (0..=degree).rev().map(|k| at - step(k));
@@ -76,10 +76,10 @@ pub fn knots(random: &mut Random, degree: usize, spans: usize, at: f64) -> Vec<f
 
 /// A bumpy sheet anywhere in space, rational or not, with weights up to 1:20.
 pub fn surface(random: &mut Random, degree: [usize; 2], spans: [usize; 2]) -> NurbsSurface {
-    let at = (random.next() - 0.5) * 10_f64.powi(random.below(4) as i32);
+    let at = (random.next() - 0.5) * math::powi(10.0, random.below(4) as i32);
     let knots = [knots(random, degree[0], spans[0], at), knots(random, degree[1], spans[1], -at)];
     let counts = [knots[0].len() - degree[0] - 1, knots[1].len() - degree[1] - 1];
-    let size = 10_f64.powf(4.0 * random.next() - 2.0);
+    let size = math::pow(10.0, 4.0 * random.next() - 2.0);
     let place = DVec3::new(random.next(), random.next(), random.next()) * size * 1e3;
     let mut points = Vec::new();
     for i in 0..counts[0] {
@@ -89,7 +89,7 @@ pub fn surface(random: &mut Random, degree: [usize; 2], spans: [usize; 2]) -> Nu
         }
     }
     let rational = random.below(2) == 0;
-    let weights = rational.then(|| points.iter().map(|_| 20_f64.powf(random.next())).collect());
+    let weights = rational.then(|| points.iter().map(|_| math::pow(20.0, random.next())).collect());
     let [u, v] = knots;
     NurbsSurface::new(degree, u, v, points, weights).expect("knots and net fit")
 }

@@ -3,6 +3,7 @@
 
 use chordal_brep::{Color, Model};
 use chordal_mesh::{PartMesh, Scene, SceneNode, ScenePart};
+use chordal_nurbs::math;
 use chordal_tessellate::{Cancel, Options, tessellate_part};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -59,7 +60,7 @@ fn mesh_all(model: &Model, tolerance: f64) -> (Scene, f64) {
 fn scale_of(model: &Model, part: usize) -> f64 {
     let placements = scene(model, vec![PartMesh::default(); model.parts.len()]).placements();
     let of_part = placements.iter().filter(|p| p.part == part);
-    let scale = of_part.map(|p| p.world.matrix3.determinant().abs().cbrt()).fold(0.0, f64::max);
+    let scale = of_part.map(|p| math::cbrt(p.world.matrix3.determinant().abs())).fold(0.0, f64::max);
     if scale > 0.0 { scale } else { 1.0 }
 }
 

@@ -1,6 +1,7 @@
 //! A comparison as a drawing: triangles and seconds of every strategy, as bars on logarithmic scales.
 
 use super::{ComparedRow, Comparison};
+use chordal_nurbs::math;
 use std::fmt::Write;
 
 const ROW: f64 = 22.0;
@@ -63,19 +64,19 @@ fn bars(out: &mut String, panel: &Panel, rows: &[ComparedRow]) {
     let values = rows.iter().map(panel.value).filter(|&v| v > 0.0);
     let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v), h.max(v)));
     // Decades around all values, so that every bar has a length.
-    let (from, to) = (low.log10().floor() - 0.3, high.log10().ceil());
-    let x = |v: f64| panel.left + PANEL * (v.log10() - from) / (to - from).max(1.0);
+    let (from, to) = (math::log10(low).floor() - 0.3, math::log10(high).ceil());
+    let x = |v: f64| panel.left + PANEL * (math::log10(v) - from) / (to - from).max(1.0);
     let _ = writeln!(out, "<text x=\"{}\" y=\"44\">{}</text>", panel.left, panel.title);
     let bottom = TOP + ROW * rows.len() as f64;
     if low.is_finite() {
-        for decade in low.log10().floor() as i32..=to as i32 {
-            let at = x(10f64.powi(decade));
+        for decade in math::log10(low).floor() as i32..=to as i32 {
+            let at = x(math::powi(10.0, decade));
             let _ = writeln!(
                 out,
                 "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"#ccc\"/>\
                  <text x=\"{at:.1}\" y=\"{}\" fill=\"#777\" font-size=\"10\" text-anchor=\"middle\">{}</text>",
                 TOP - 4.0,
-                10f64.powi(decade)
+                math::powi(10.0, decade)
             );
         }
     }

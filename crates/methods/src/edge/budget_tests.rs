@@ -7,7 +7,7 @@
 use super::curve::{Source, TrimmingCurve};
 use super::in_plane::stops;
 use crate::fill::node::{Flatness, Measure};
-use chordal_nurbs::{BezierCurve, DVec2, DVec3, NurbsSurface, Range};
+use chordal_nurbs::{BezierCurve, DVec2, DVec3, NurbsSurface, Range, math};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -35,7 +35,7 @@ fn trimmed(degrees: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Tr
     let shape = (degrees.clone(), degrees, any::<bool>(), any::<bool>(), -4.0f64..0.0);
     (shape, net, curve, -1.5f64..-0.3).prop_map(|((p, q, rational, bent, relief), net, curve, kappa)| {
         let (rows, columns) = (p + 2, q + 2);
-        let relief = 10f64.powf(relief);
+        let relief = math::pow(10.0, relief);
         let place = |k: usize| {
             let (i, j) = (k / columns, k % columns);
             DVec3::new(3.0 * i as f64 / (rows - 1) as f64, 3.0 * j as f64 / (columns - 1) as f64, 0.0)
@@ -43,13 +43,13 @@ fn trimmed(degrees: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Tr
         let net = &net[..rows * columns];
         let points =
             net.iter().enumerate().map(|(k, n)| place(k) + relief * DVec3::new(n.0, n.1, n.2)).collect();
-        let weights = rational.then(|| net.iter().map(|n| 10f64.powf(n.3)).collect());
+        let weights = rational.then(|| net.iter().map(|n| math::pow(10.0, n.3)).collect());
         let knots = [clamped(p, &[0.45]), clamped(q, &[0.6])];
         let [us, vs] = knots;
         let surface = NurbsSurface::new([p, q], us, vs, points, weights).expect("legal");
-        let weights = bent.then(|| curve.iter().map(|c| 10f64.powf(c.2)).collect());
+        let weights = bent.then(|| curve.iter().map(|c| math::pow(10.0, c.2)).collect());
         let points = curve.iter().map(|c| DVec2::new(c.0, c.1)).collect();
-        Trimmed { surface, curve: BezierCurve { points, weights }, kappa: 10f64.powf(kappa) }
+        Trimmed { surface, curve: BezierCurve { points, weights }, kappa: math::pow(10.0, kappa) }
     })
 }
 

@@ -270,11 +270,12 @@ impl FaceFiller for Coving {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use chordal_tessellate::method::orient;
 
     fn ring(n: u32, radius: f64, phase: f64) -> Vec<DVec2> {
         (0..n)
-            .map(|i| DVec2::from_angle(std::f64::consts::TAU * f64::from(i) / f64::from(n) + phase) * radius)
+            .map(|i| math::direction(std::f64::consts::TAU * f64::from(i) / f64::from(n) + phase) * radius)
             .collect()
     }
 
@@ -289,7 +290,7 @@ mod tests {
 
     /// A regular polygon's area.
     fn regular(n: u32, radius: f64) -> f64 {
-        0.5 * f64::from(n) * radius * radius * (std::f64::consts::TAU / f64::from(n)).sin()
+        0.5 * f64::from(n) * radius * radius * math::sin(std::f64::consts::TAU / f64::from(n))
     }
 
     #[test]

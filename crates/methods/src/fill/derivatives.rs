@@ -121,6 +121,7 @@ impl Net {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     #[test]
@@ -142,7 +143,7 @@ mod tests {
             (u, v) in (0.0f64..1.0, 0.0f64..1.0),
         ) {
             let points: Vec<DVec3> = net.iter().map(|&(x, y, z, _)| DVec3::new(x, y, z)).collect();
-            let weights = rational.then(|| net.iter().map(|p| 10f64.powf(p.3)).collect());
+            let weights = rational.then(|| net.iter().map(|p| math::pow(10.0, p.3)).collect());
             let patch = BezierPatch { degree: [4, 3], points, weights };
             let n = SecondNorms::of_patch(&patch);
             let jet = patch.jet(DVec2::new(u, v));
@@ -158,7 +159,7 @@ mod tests {
             (s, t) in (0.0f64..1.0, 0.0f64..1.0),
         ) {
             let points: Vec<DVec3> = net.iter().map(|&(x, y, z, _)| DVec3::new(x, y, z)).collect();
-            let weights = rational.then(|| net.iter().map(|p| 10f64.powf(p.3)).collect());
+            let weights = rational.then(|| net.iter().map(|p| math::pow(10.0, p.3)).collect());
             let patch = BezierPatch { degree: [3, 2], points, weights };
             let error = SecondNorms::of_patch(&patch).error(1.0, 1.0);
             let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };

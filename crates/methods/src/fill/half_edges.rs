@@ -246,6 +246,7 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     fn area(points: &[DVec2], nodes: &[u32]) -> f64 {
@@ -326,7 +327,7 @@ mod tests {
                 for hole in 2..what.max(1) + 1 {
                     let first = points.len() as u32;
                     let middle = DVec2::new((k % 6) as f64, (k / 6) as f64) + [0.3, 0.7][usize::from(hole - 2)];
-                    let corners = (0..3).map(|c| middle + 0.2 * DVec2::from_angle(turn - 2.1 * f64::from(c)));
+                    let corners = (0..3).map(|c| middle + 0.2 * math::direction(turn - 2.1 * f64::from(c)));
                     points.extend(corners);
                     trimming.extend(ring(first, 3));
                     let nodes = [first, first + 1, first + 2];

@@ -174,6 +174,7 @@ fn bend(abscissae: &[f64], lines: usize, point: impl Fn(usize, usize) -> DVec3) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     fn clamped(degree: usize, inner: &[f64]) -> Vec<f64> {
@@ -228,7 +229,7 @@ mod tests {
             rational in any::<bool>(),
         ) {
             let points: Vec<DVec3> = net.iter().map(|&(x, y, z, _)| DVec3::new(x, y, z)).collect();
-            let weights = rational.then(|| net.iter().map(|p| 10f64.powf(p.3)).collect());
+            let weights = rational.then(|| net.iter().map(|p| math::pow(10.0, p.3)).collect());
             let s = NurbsSurface::new([3, 2], clamped(3, &[0.4]), clamped(2, &[0.7]), points, weights).expect("valid");
             let f = Flatness::new(&s, Measure::Conservative);
             let corner = |u: f64, v: f64| s.point(DVec2::new(u, v));

@@ -297,6 +297,7 @@ fn monotone_pieces(points: &[DVec2], loops: &[Vec<u32>]) -> Option<Vec<[u32; 3]>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     #[test]
@@ -344,7 +345,7 @@ mod tests {
     /// A star around (x, y); the radius changes from corner to corner.
     fn star(middle: DVec2, radii: &[f64]) -> Vec<DVec2> {
         let turn = std::f64::consts::TAU / radii.len() as f64;
-        let at = |(i, r): (usize, &f64)| middle + *r * DVec2::from_angle(turn * i as f64);
+        let at = |(i, r): (usize, &f64)| middle + *r * math::direction(turn * i as f64);
         radii.iter().enumerate().map(at).collect()
     }
 
@@ -407,7 +408,7 @@ mod tests {
             // The middle must be inside, so that a dent is one.
             let around = angles.windows(2).map(|w| w[1] - w[0]).fold(angles[0] + 6.29 - angles[angles.len() - 1], f64::max);
             prop_assume!(angles.len() >= 4 && around < 3.0);
-            let mut points: Vec<DVec2> = angles.iter().map(|&a| DVec2::from_angle(a) * DVec2::new(stretch, 1.0)).collect();
+            let mut points: Vec<DVec2> = angles.iter().map(|&a| math::direction(a) * DVec2::new(stretch, 1.0)).collect();
             if dent {
                 points[1] *= 0.01;
             }

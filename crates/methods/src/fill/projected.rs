@@ -26,7 +26,7 @@ use super::cells::{Rule, Split};
 use super::grid::halves;
 use super::node::{Bilinear, Flatness, Measure, greville};
 use super::quadtree::at_knots;
-use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
+use chordal_nurbs::{DVec2, DVec3, NurbsSurface, math};
 
 /// Bézier patches halved until their nets are flat.
 #[derive(Clone, Copy, Debug)]
@@ -117,7 +117,7 @@ impl Quadrilateral {
             let t = ((foot - a).dot(d) / d.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             beside = beside.min(foot.distance(a + d * t));
         }
-        if inside { height.abs() } else { height.hypot(beside) }
+        if inside { height.abs() } else { math::hypot(height, beside) }
     }
 }
 

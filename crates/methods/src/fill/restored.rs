@@ -5,7 +5,7 @@
 //! be too small.
 
 use super::node::{Flatness, Measure};
-use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
+use chordal_nurbs::{DVec2, DVec3, NurbsSurface, math};
 
 fn clamped(degree: usize, inner: &[f64]) -> Vec<f64> {
     let mut knots = vec![0.0; degree + 1];
@@ -26,7 +26,9 @@ fn interpolating(values: &[f64]) -> Vec<f64> {
     let binomial = |i: usize| (0..i).fold(1.0, |b, k| b * (n - k) as f64 / (k + 1) as f64);
     let row = |k: usize| {
         let t = k as f64 / n as f64;
-        (0..=n).map(|i| binomial(i) * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32)).collect::<Vec<f64>>()
+        (0..=n)
+            .map(|i| binomial(i) * math::powi(t, i as i32) * math::powi(1.0 - t, (n - i) as i32))
+            .collect::<Vec<f64>>()
     };
     let mut rows: Vec<(Vec<f64>, f64)> = (0..=n).map(|k| (row(k), values[k])).collect();
     for c in 0..=n {

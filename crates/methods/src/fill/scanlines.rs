@@ -145,6 +145,7 @@ fn beyond(tree: &LoopTree, k: u32, level: f64) -> (DVec2, DVec2) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     fn square(a: f64, b: f64) -> Vec<DVec2> {
@@ -198,7 +199,7 @@ mod tests {
         let n = radii.len() as f64;
         let corner = |(i, &r): (usize, &u8)| {
             let angle = std::f64::consts::TAU * i as f64 / n;
-            (DVec2::from_angle(angle) * f64::from(r)).round() + 16.5
+            (math::direction(angle) * f64::from(r)).round() + 16.5
         };
         radii.iter().enumerate().map(corner).collect()
     }
@@ -219,7 +220,7 @@ mod tests {
             let turns = |polygon: &Vec<DVec2>| {
                 let c = patch.center();
                 let n = polygon.len();
-                let angle = |i: usize| (polygon[i] - c).angle_to(polygon[(i + 1) % n] - c);
+                let angle = |i: usize| math::angle_to(polygon[i] - c, polygon[(i + 1) % n] - c);
                 ((0..n).map(angle).sum::<f64>() / std::f64::consts::TAU).round() as i64
             };
             if place != Place::Cut {

@@ -1,6 +1,6 @@
 //! Random patches to attack bounds with: any degree to 20, weights from 1e-3 to 1e3.
 
-use chordal_nurbs::{DVec2, DVec3, NurbsSurface};
+use chordal_nurbs::{DVec2, DVec3, NurbsSurface, math};
 use proptest::prelude::*;
 
 /// A Bézier patch over the unit square.
@@ -28,7 +28,7 @@ pub fn patches() -> impl Strategy<Value = NurbsSurface> {
             .iter()
             .enumerate()
             .map(|(k, n)| place(k) + DVec3::new(n.0, n.1, n.2) * if wild { 1.0 } else { 0.2 });
-        let weights = rational.then(|| net.iter().map(|n| 10f64.powf(n.3)).collect());
+        let weights = rational.then(|| net.iter().map(|n| math::pow(10.0, n.3)).collect());
         patch([p, q], points.collect(), weights)
     })
 }

@@ -178,7 +178,7 @@ fn along_edge(mesh: &mut LeafMesh, vertex: u32, rest: &BezierCurve<DVec2>) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use chordal_nurbs::UvBox;
+    use chordal_nurbs::{UvBox, math};
     use proptest::prelude::*;
 
     /// The unit square in 4 × 4 leaves, the one at (1, 1) cut into four.
@@ -276,7 +276,7 @@ mod tests {
         let mut mesh = leaves();
         let tracked = track(&mut mesh, &chain);
         check(&mesh, &chain, &tracked).expect("followed");
-        let at = |k: usize| c + DVec2::from_angle(std::f64::consts::TAU * k as f64 / 100_000.0) * r;
+        let at = |k: usize| c + math::direction(std::f64::consts::TAU * k as f64 / 100_000.0) * r;
         let leaf = |p: DVec2| mesh.leaves_at(p)[0];
         let changes = (0..100_000).filter(|&k| leaf(at(k)) != leaf(at(k + 1))).count();
         assert_eq!(tracked.transitions[0], changes);
@@ -303,7 +303,7 @@ mod tests {
             let chain: Vec<BezierCurve<DVec2>> = [0, 3]
                 .map(|k| BezierCurve {
                     points: net[k..k + 4].iter().map(place).collect(),
-                    weights: rational.then(|| net[k..k + 4].iter().map(|n| 10f64.powf(n.2)).collect()),
+                    weights: rational.then(|| net[k..k + 4].iter().map(|n| math::pow(10.0, n.2)).collect()),
                 })
                 .to_vec();
             prop_assume!(chain.iter().all(|c| c.points.windows(2).all(|w| w[0] != w[1])));

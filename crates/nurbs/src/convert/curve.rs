@@ -1,6 +1,7 @@
 //! Exact NURBS forms of curves.
 
 use super::{LONGEST_ARC, LONGEST_HYPERBOLA, checked, spans};
+use crate::math;
 use crate::{
     CompositeSegment, Curve, Curve2, NurbsCurve, NurbsCurve2, NurbsCurve3, NurbsError, Range, Vector,
 };
@@ -86,14 +87,14 @@ pub(super) fn ramp(range: Range) -> Result<NurbsCurve<f64>, NurbsError> {
 pub(super) fn arc(range: Range) -> Result<NurbsCurve2, NurbsError> {
     let count = spans(range, LONGEST_ARC)?;
     let h = 0.5 * range.length() / count as f64;
-    quadratic_spans(range, count, h.cos(), |t| DVec2::new(t.cos(), t.sin()))
+    quadratic_spans(range, count, math::cos(h), |t| DVec2::new(math::cos(t), math::sin(t)))
 }
 
 /// `(cosh t, sinh t)`.
 fn hyperbola(range: Range) -> Result<NurbsCurve2, NurbsError> {
     let count = spans(range, LONGEST_HYPERBOLA)?;
     let h = 0.5 * range.length() / count as f64;
-    quadratic_spans(range, count, h.cosh(), |t| DVec2::new(t.cosh(), t.sinh()))
+    quadratic_spans(range, count, math::cosh(h), |t| DVec2::new(math::cosh(t), math::sinh(t)))
 }
 
 /// Equal conic spans around the origin with the middle weight `weight`.

@@ -1,6 +1,7 @@
 //! How native parameters (angles) turn into those of a NURBS form, and back.
 
 use super::{LONGEST_ARC, LONGEST_HYPERBOLA, spans};
+use crate::math;
 use crate::{Curve, NurbsError, Range, Surface, UvBox};
 use glam::DVec2;
 
@@ -46,20 +47,20 @@ impl ParameterMap {
             ParameterMap::Identity => t,
             ParameterMap::Arcs { start, step } => {
                 let (m, h) = middle(t, *start, *step);
-                let whole = (0.5 * h).tan();
+                let whole = math::tan(0.5 * h);
                 if forward {
-                    m + h * (0.5 * (t - m)).tan() / whole
+                    m + h * math::tan(0.5 * (t - m)) / whole
                 } else {
-                    m + 2.0 * ((t - m) / h * whole).atan()
+                    m + 2.0 * math::atan((t - m) / h * whole)
                 }
             }
             ParameterMap::Hyperbolas { start, step } => {
                 let (m, h) = middle(t, *start, *step);
-                let whole = (0.5 * h).tanh();
+                let whole = math::tanh(0.5 * h);
                 if forward {
-                    m + h * (0.5 * (t - m)).tanh() / whole
+                    m + h * math::tanh(0.5 * (t - m)) / whole
                 } else {
-                    m + 2.0 * ((t - m) / h * whole).atanh()
+                    m + 2.0 * math::atanh((t - m) / h * whole)
                 }
             }
             ParameterMap::Pieces(pieces) => {

@@ -1,6 +1,7 @@
 //! Exact NURBS forms of surfaces, as products of two curves.
 
 use super::curve::{arc, ramp};
+use crate::math;
 use crate::{Frame, NurbsCurve, NurbsError, NurbsSurface, Surface, UvBox, Vector};
 use glam::{DVec2, DVec3};
 
@@ -22,7 +23,7 @@ impl Surface {
                 product(&arc(u)?, &ramp(v)?, |e, v: f64| f.origin + spoke(f, e) * *radius + f.z * v)
             }
             Surface::Cone { frame: f, radius, half_angle } => {
-                let slope = half_angle.tan();
+                let slope = math::tan(*half_angle);
                 product(&arc(u)?, &ramp(v)?, |e, v: f64| {
                     f.origin + spoke(f, e) * (radius + v * slope) + f.z * v
                 })

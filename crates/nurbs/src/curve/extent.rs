@@ -1,5 +1,6 @@
 //! Boxes around curves.
 
+use crate::math;
 use crate::{Box3, Curve, NurbsCurve3, Range};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -23,7 +24,7 @@ impl Curve {
                 stops.extend(interior(range, |k| Some(-(f.y * *focal)[k] / (f.x * *focal)[k])));
             }
             Curve::Hyperbola { frame: f, a, b } => {
-                stops.extend(interior(range, |k| Some((-(f.y * *b)[k] / (f.x * *a)[k]).atanh())));
+                stops.extend(interior(range, |k| Some(math::atanh(-(f.y * *b)[k] / (f.x * *a)[k]))));
             }
             Curve::Nurbs(curve) => return nurbs_box(self, curve, range),
             Curve::Polyline(_) => stops.extend(self.all_breaks(range)),
@@ -63,7 +64,7 @@ fn turns(p: DVec3, q: DVec3, range: Range) -> Vec<f64> {
     let whole = Range::new(range.start, range.end.min(range.start + TAU));
     let mut found = Vec::new();
     for k in 0..3 {
-        let at = q[k].atan2(p[k]);
+        let at = math::atan2(q[k], p[k]);
         let first = at + ((whole.start - at) / PI).ceil() * PI;
         found.extend((0..3).map(|i| first + f64::from(i) * PI).filter(|t| whole.contains(*t)));
     }

@@ -1,5 +1,6 @@
 //! Curves moved by affine maps, their parameters kept.
 
+use crate::math;
 use crate::{CompositeSegment, Curve, Frame};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
@@ -63,7 +64,7 @@ impl Curve {
 /// The scale of a map that keeps shapes, negative where it mirrors; `None` where it distorts or collapses.
 pub(crate) fn similarity(by: &DAffine3) -> Option<f64> {
     let m = by.matrix3;
-    let scale = m.determinant().abs().cbrt();
+    let scale = math::cbrt(m.determinant().abs());
     let lengths = [m.x_axis, m.y_axis, m.z_axis].map(DVec3::length);
     let skew = [m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis)];
     // Files write the axes of a placement with as few as nine digits.

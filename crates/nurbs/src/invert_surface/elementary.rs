@@ -1,6 +1,7 @@
 //! Closed forms for planes, cylinders, cones, spheres and tori.
 
 use crate::invert_curve::ON_AXIS;
+use crate::math;
 use crate::{Frame, Surface};
 use glam::{DVec2, DVec3};
 
@@ -17,9 +18,9 @@ struct Polar {
 /// Cylindrical coordinates; on the axis the angle is the hint's.
 fn polar(frame: &Frame, p: DVec3, size: f64, near: Option<DVec2>) -> Polar {
     let local = frame.local(p);
-    let radius = local.x.hypot(local.y);
+    let radius = math::hypot(local.x, local.y);
     let on_axis = radius <= ON_AXIS * (size.abs() + local.z.abs());
-    let angle = if on_axis { near.map_or(0.0, |n| n.x) } else { local.y.atan2(local.x) };
+    let angle = if on_axis { near.map_or(0.0, |n| n.x) } else { math::atan2(local.y, local.x) };
     Polar { angle, radius, height: local.z }
 }
 
@@ -30,10 +31,10 @@ pub(super) fn invert(surface: &Surface, p: DVec3, near: Option<DVec2>) -> DVec2 
             let at = polar(frame, p, *radius, near);
             DVec2::new(at.angle, at.height)
         }
-        Surface::Cone { frame, radius, half_angle } => cone(frame, *radius, half_angle.tan(), p, near),
+        Surface::Cone { frame, radius, half_angle } => cone(frame, *radius, math::tan(*half_angle), p, near),
         Surface::Sphere { frame, radius } => {
             let at = polar(frame, p, *radius, near);
-            DVec2::new(at.angle, at.height.atan2(at.radius))
+            DVec2::new(at.angle, math::atan2(at.height, at.radius))
         }
         Surface::Torus { frame, major, minor } => torus(frame, *major, *minor, p, near),
         _ => near.unwrap_or_default(),
@@ -64,8 +65,8 @@ fn cone(frame: &Frame, r: f64, slope: f64, p: DVec3, near: Option<DVec2>) -> DVe
 fn torus(frame: &Frame, major: f64, minor: f64, p: DVec3, near: Option<DVec2>) -> DVec2 {
     let at = polar(frame, p, major.abs() + minor.abs(), near);
     let (x, z) = (at.radius - major, at.height);
-    let on_circle = x.hypot(z) <= ON_AXIS * (major.abs() + minor.abs());
-    let v = if on_circle { near.map_or(0.0, |n| n.y) } else { z.atan2(x) };
+    let on_circle = math::hypot(x, z) <= ON_AXIS * (major.abs() + minor.abs());
+    let v = if on_circle { near.map_or(0.0, |n| n.y) } else { math::atan2(z, x) };
     let surface = Surface::Torus { frame: *frame, major, minor };
     DVec2::new(at.angle, surface.spindle_latitude().map_or(v, |pole| v.clamp(-pole, pole)))
 }

@@ -2,6 +2,7 @@
 
 use crate::conic::wrapped;
 use crate::invert_curve::{ON_AXIS, Seeds, reach};
+use crate::math;
 use crate::{Curve, Range};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
@@ -140,6 +141,6 @@ impl<'a> RevolutionInverter<'a> {
         if from.length() <= size || to.length() <= size {
             return near.map_or(0.0, |n| n.x);
         }
-        from.cross(to).dot(self.axis).atan2(from.dot(to))
+        math::atan2(from.cross(to).dot(self.axis), from.dot(to))
     }
 }

@@ -1,4 +1,5 @@
 use crate::fixtures::{self, Random};
+use crate::math;
 use crate::*;
 use std::f64::consts::TAU;
 
@@ -111,8 +112,8 @@ fn wild_surfaces_are_mostly_searched_well() {
                 let a = TAU * i as f64 / (nu - 1) as f64;
                 let base = match case % 3 {
                     0 => DVec3::new(i as f64, j as f64, 0.0),
-                    1 => DVec3::new(3.0 * a.cos(), 3.0 * a.sin(), j as f64),
-                    _ => DVec3::new(j as f64 * a.cos(), j as f64 * a.sin(), j as f64),
+                    1 => DVec3::new(3.0 * math::cos(a), 3.0 * math::sin(a), j as f64),
+                    _ => DVec3::new(j as f64 * math::cos(a), j as f64 * math::sin(a), j as f64),
                 };
                 let noise = if case % 3 > 0 && (i == 0 || i == nu - 1 || j == 0) {
                     DVec3::ZERO

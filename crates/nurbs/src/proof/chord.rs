@@ -9,6 +9,7 @@
 //! the chord's ends has a point straight above each of the chord's.
 
 use crate::curve::{repeat_over, tidy};
+use crate::math;
 use crate::segment::segment_distance;
 use crate::{CompositeSegment, Curve, Range};
 use glam::DVec3;
@@ -45,16 +46,16 @@ impl Curve {
         match self {
             Curve::Line { .. } => 0.0,
             Curve::Circle { frame, radius } => {
-                let sag = if h >= PI { 2.0 } else { 2.0 * (0.5 * h).sin().powi(2) };
+                let sag = if h >= PI { 2.0 } else { 2.0 * math::square(math::sin(0.5 * h)) };
                 radius.abs() * sag + ROUNDING * (frame.origin.length() + radius.abs())
             }
             Curve::Ellipse { frame, a, b } => {
                 let size = a.abs().max(b.abs());
                 let rounding = ROUNDING * (frame.origin.length() + size);
                 // The image of a circle under a map that stretches by no more than the longer half axis.
-                let loose = size * if h >= PI { 2.0 } else { 2.0 * (0.5 * h).sin().powi(2) };
+                let loose = size * if h >= PI { 2.0 } else { 2.0 * math::square(math::sin(0.5 * h)) };
                 let tight = if h < FRAC_PI_2 {
-                    self.conic_sag(middle, 2.0 * (0.5 * h).sin().powi(2), h.tan())
+                    self.conic_sag(middle, 2.0 * math::square(math::sin(0.5 * h)), math::tan(h))
                 } else {
                     loose
                 };
@@ -64,7 +65,7 @@ impl Curve {
                 self.conic_sag(middle, 0.5 * h * h, h) + self.rounding(frame.origin, range)
             }
             Curve::Hyperbola { frame, .. } => {
-                self.conic_sag(middle, 2.0 * (0.5 * h).sinh().powi(2), h.tanh())
+                self.conic_sag(middle, 2.0 * math::square(math::sinh(0.5 * h)), math::tanh(h))
                     + self.rounding(frame.origin, range)
             }
             Curve::Polyline(_) => self.chained(range, self.all_breaks(range), |_| 0.0),
@@ -97,7 +98,7 @@ impl Curve {
                 stops.extend((1..PIECES).map(|i| range.start + range.length() * i as f64 / PIECES as f64));
                 stops.sort_by(f64::total_cmp);
                 self.chained(range, stops, |piece| {
-                    let second = self.derivative_bound(2, piece) * piece.length().powi(2) / 8.0;
+                    let second = self.derivative_bound(2, piece) * math::square(piece.length()) / 8.0;
                     // Half the length run bounds it too: less where the piece bends hard.
                     if second <= 0.5 * self.point(piece.start).distance(self.point(piece.end)) {
                         second
@@ -142,7 +143,8 @@ impl Curve {
                     let index = (0.5 * (own.start + own.end)).floor();
                     segments.get(index as usize).map_or(0.0, |s| {
                         let at = s.own_range(own.start - index, own.end - index);
-                        (s.end - s.start).abs().powi(order as i32) * s.curve.derivative_bound(order, at)
+                        math::powi((s.end - s.start).abs(), order as i32)
+                            * s.curve.derivative_bound(order, at)
                     })
                 })
                 .fold(0.0, f64::max),

@@ -14,6 +14,7 @@
 //! it to the other as the curve does. What is too far is halved, or cut at the parameter `j/n` of its
 //! farthest control point `b_j`.
 
+use crate::math;
 use crate::{BezierCurve, Vector};
 
 /// How far a Bézier curve may be from its chord.
@@ -67,7 +68,7 @@ impl<V: Vector> BezierCurve<V> {
                 worst = (distance, i);
             }
         }
-        let factor = if self.weights.is_some() { 1.0 } else { 1.0 - 0.5f64.powi(n as i32 - 1) };
+        let factor = if self.weights.is_some() { 1.0 } else { 1.0 - math::powi(0.5, n as i32 - 1) };
         (factor * worst.0, worst.1)
     }
 

@@ -17,6 +17,7 @@ mod refine_bound;
 mod setting;
 mod slope;
 
+use crate::math;
 use crate::{Piece, Surface, SurfaceBounds};
 use glam::{DVec2, DVec3};
 
@@ -63,14 +64,14 @@ pub fn facet_bound(
         Surface::Plane { .. } => FacetBound::EXACT,
         Surface::Cylinder { radius, .. } => elementary::cone(facet, [*radius; 3], 1.0),
         Surface::Cone { radius, half_angle, .. } => {
-            let radii = facet.uv.map(|p| radius + p.y * half_angle.tan());
-            elementary::cone(facet, radii, half_angle.cos())
+            let radii = facet.uv.map(|p| radius + p.y * math::tan(*half_angle));
+            elementary::cone(facet, radii, math::cos(*half_angle))
         }
         Surface::Sphere { frame, radius } => elementary::sphere(facet, frame.origin, *radius),
         // Where the tube is wider than its circle, only the part that faces away from the axis has the simple
         // form.
         Surface::Torus { frame, major, minor }
-            if facet.uv.iter().all(|p| major + minor * p.y.cos() > 0.0) =>
+            if facet.uv.iter().all(|p| major + minor * math::cos(p.y) > 0.0) =>
         {
             let own = elementary::torus(facet, frame, *major, *minor, enough);
             // Facets long against the tube's radius are beyond it: derivatives must do.

@@ -6,6 +6,7 @@
 //!   derivatives over the box that the parameter curve keeps to.
 
 use super::spline_chord::hull_to_chord;
+use crate::math;
 use crate::vector::largest;
 use crate::{Curve, Curve2, LiftOptions, LiftedPiece, Range, Surface, SurfaceBounds, UvBox};
 use glam::DVec2;
@@ -63,7 +64,7 @@ pub(super) fn derivative_bound(surface: &Surface, curve: &Curve2, order: usize, 
     let middle = curve.point(0.5 * (range.start + range.end));
     let uv = UvBox::new(middle, middle).inflated(DVec2::splat(reach));
     let Some(s) = norms(surface, uv) else { return f64::INFINITY };
-    let first = s.first[0].hypot(s.first[1]);
+    let first = math::hypot(s.first[0], s.first[1]);
     match order {
         1 => first * c1,
         2 => (s.second[0] + 2.0 * s.second[1] + s.second[2]) * c1 * c1 + first * c2,
@@ -80,9 +81,9 @@ fn norms(surface: &Surface, uv: UvBox) -> Option<Norms> {
             Norms { first: [radius.abs(), 1.0], second: [radius.abs(), 0.0, 0.0] }
         }
         Surface::Cone { radius, half_angle, .. } => {
-            let slope = half_angle.tan();
+            let slope = math::tan(*half_angle);
             let r = farthest(*radius, slope);
-            Norms { first: [r, 1.0 / half_angle.cos().abs()], second: [r, slope.abs(), 0.0] }
+            Norms { first: [r, 1.0 / math::cos(*half_angle).abs()], second: [r, slope.abs(), 0.0] }
         }
         Surface::Sphere { radius, .. } => {
             let r = radius.abs();

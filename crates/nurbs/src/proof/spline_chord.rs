@@ -15,6 +15,7 @@
 //! bound has its rounding added. A piece whose weights differ in sign has no bound here: infinity.
 
 use crate::homogeneous::homogeneous;
+use crate::math;
 use crate::segment::segment_distance;
 use crate::vector::largest;
 use crate::{BezierCurve, NurbsCurve, Range, Vector, basis, bernstein, blossom};
@@ -57,7 +58,7 @@ impl<V: Vector> NurbsCurve<V> {
             let origin = self.points()[s];
             let piece = self.local_piece(s, part, origin);
             let shift = if order == 0 { origin.norm() } else { 0.0 };
-            shift + piece.derivative_bound(order) / part.length().powi(order as i32)
+            shift + piece.derivative_bound(order) / math::powi(part.length(), order as i32)
         }))
     }
 
@@ -127,7 +128,7 @@ pub(crate) fn hull_to_chord<V: Vector>(piece: &BezierCurve<V>, (a, b): (V, V)) -
 
 /// The share of the polynomial basis that its two ends hold at least.
 fn ends_share(degree: usize) -> f64 {
-    0.5f64.powi(degree as i32 - 1).min(1.0)
+    math::powi(0.5, degree as i32 - 1).min(1.0)
 }
 
 /// What the control points of a piece may be off by, relative to the largest coordinate in play.
@@ -192,7 +193,7 @@ fn polynomial_derivative_bound<V: Vector>(points: &[V], order: usize) -> f64 {
         net = blossom::hodograph(&net);
     }
     let norms = |net: &[V]| largest(net.iter().map(|p| p.norm()));
-    norms(&net) + rounding(degree) * (2.0 * degree as f64).powi(order as i32) * norms(points)
+    norms(&net) + rounding(degree) * math::powi(2.0 * degree as f64, order as i32) * norms(points)
 }
 
 fn rational_derivative_bound<V: Vector>(points: &[V], weights: &[f64], order: usize) -> f64 {
@@ -223,6 +224,6 @@ fn rational_derivative_bound<V: Vector>(points: &[V], weights: &[f64], order: us
         (least, most) = (least.min(weight(i)), most.max(weight(i)));
     }
     let reach = largest(points.iter().map(|p| p.norm()));
-    let steps = (2.0 * n as f64).powi(order as i32) * (most / least).powi(order as i32 + 1);
+    let steps = math::powi(2.0 * n as f64, order as i32) * math::powi(most / least, order as i32 + 1);
     quotient + 2.0 * rounding(n * (order + 1)) * steps * reach
 }

@@ -1,6 +1,7 @@
 //! Lines of parameter space along which a surface is bent sharply: its normals on the two sides differ.
 
 use crate::curve::{ANY, surface_lines};
+use crate::math;
 use crate::{Range, Surface};
 use glam::DVec2;
 
@@ -88,7 +89,7 @@ impl Surface {
             let along = if across.is_finite() { across.start + across.length() * share } else { share };
             let at = |t: f64| if axis == 0 { DVec2::new(t, along) } else { DVec2::new(along, t) };
             let sides = [self.normal(at(before - aside)), self.normal(at(value + aside))];
-            matches!(sides, [Some(n), Some(m)] if n.angle_between(m) > SMOOTH)
+            matches!(sides, [Some(n), Some(m)] if math::angle_between(n, m) > SMOOTH)
         })
     }
 }

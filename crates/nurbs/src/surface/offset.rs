@@ -1,6 +1,7 @@
 //! Surfaces at a constant distance from others.
 
 use crate::curve::unit_jet;
+use crate::math;
 use crate::{Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3};
 
@@ -40,7 +41,7 @@ fn moved(basis: &Surface, distance: f64) -> Option<Surface> {
         // Normals point away from the axis on the nappe of v = 0; the other nappe turns inside out, as it
         // would.
         Surface::Cone { frame, radius, half_angle } if *radius >= 0.0 => {
-            let (s, c) = half_angle.sin_cos();
+            let (s, c) = math::sin_cos(*half_angle);
             let side = if *radius == 0.0 { half_angle.signum() } else { 1.0 };
             let mut frame = *frame;
             frame.origin -= frame.z * (distance * s * side);

@@ -2,6 +2,7 @@
 //! the normals there.
 
 use crate::curve::CLOSED;
+use crate::math;
 use crate::{Curve, NurbsSurface, Range, Surface, UvBox};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -47,7 +48,7 @@ impl Surface {
         match self {
             Surface::Plane { .. } | Surface::Cylinder { .. } | Surface::Extrusion { .. } => Vec::new(),
             Surface::Cone { frame, radius, half_angle } => {
-                let v = -radius / half_angle.tan();
+                let v = -radius / math::tan(*half_angle);
                 let apex = Pole { axis: 1, value: v, point: frame.origin + frame.z * v };
                 if v.is_finite() { vec![apex] } else { Vec::new() }
             }

@@ -18,6 +18,7 @@
 //! A torus with −r < R < 0 keeps its negative major radius: it is the *lemon*, the inner part of a spindle
 //! torus, as R with 0 < R < r is the *apple*, its outer part. Both are the points with R + r cos v ≥ 0.
 
+use crate::math;
 use crate::{Frame, Surface};
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -93,14 +94,14 @@ impl Surface {
     /// torus that keeps away from its axis, and for other surfaces.
     pub(crate) fn spindle_latitude(&self) -> Option<f64> {
         match self {
-            Surface::Torus { major, minor, .. } if major.abs() < *minor => Some((-major / minor).acos()),
+            Surface::Torus { major, minor, .. } if major.abs() < *minor => Some(math::acos(-major / minor)),
             _ => None,
         }
     }
 }
 
 fn positive_cone(frame: &Frame, radius: f64, half_angle: f64) -> Option<PositiveSurface> {
-    let slope = half_angle.tan();
+    let slope = math::tan(half_angle);
     if slope == 0.0 {
         let cylinder = Surface::Cylinder { frame: *frame, radius };
         return Some(
@@ -110,7 +111,7 @@ fn positive_cone(frame: &Frame, radius: f64, half_angle: f64) -> Option<Positive
         );
     }
     // Angles beyond a right one open the other way.
-    let acute = if half_angle.cos() < 0.0 { slope.atan() } else { half_angle };
+    let acute = if math::cos(half_angle) < 0.0 { math::atan(slope) } else { half_angle };
     if radius >= 0.0 {
         let surface = Surface::Cone { frame: *frame, radius, half_angle: acute };
         return (acute != half_angle).then(|| PositiveSurface::same_parameters(surface));

@@ -1,5 +1,6 @@
 //! Extruded and revolved surfaces.
 
+use crate::math;
 use crate::{Curve, SurfaceJet};
 use glam::{DVec2, DVec3};
 
@@ -13,7 +14,7 @@ pub(crate) fn turned_vector(d: DVec3, axis: DVec3, u: f64) -> DVec3 {
     if u == 0.0 {
         return d;
     }
-    let (s, c) = u.sin_cos();
+    let (s, c) = math::sin_cos(u);
     let along = axis * d.dot(axis);
     along + (d - along) * c + axis.cross(d) * s
 }

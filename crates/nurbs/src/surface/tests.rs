@@ -1,4 +1,5 @@
 use crate::fixtures::{self, Random};
+use crate::math;
 use crate::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -60,7 +61,7 @@ fn poles_are_points_with_normals() {
     };
     for (surface, values) in [
         (&sphere, vec![-FRAC_PI_2, FRAC_PI_2]),
-        (&cone, vec![-2.0 / 0.4f64.tan()]),
+        (&cone, vec![-2.0 / math::tan(0.4)]),
         (&apple, vec![-PI + PI / 3.0, PI - PI / 3.0]),
         (&lemon, vec![-PI / 3.0, PI / 3.0]),
         (&horn, vec![PI]),
@@ -113,7 +114,7 @@ fn closed_surfaces_have_periods() {
         knots.push(8.0);
         (knots, points)
     };
-    let (knots, ring) = closed(&|a| DVec3::new(a.cos(), a.sin(), 0.0));
+    let (knots, ring) = closed(&|a| DVec3::new(math::cos(a), math::sin(a), 0.0));
     let points: Vec<DVec3> = ring.iter().flat_map(|&p| [p, p + DVec3::Z]).collect();
     let tube = Surface::Nurbs(NurbsSurface::new([1, 1], knots, vec![0., 0., 1., 1.], points, None).unwrap());
     assert_eq!(tube.periods(), [Some(8.0), None]);
@@ -126,7 +127,7 @@ fn closed_surfaces_have_periods() {
 
 #[test]
 fn moved_surfaces_keep_their_kind() {
-    let turn = DAffine3::from_axis_angle(DVec3::new(1., 2., 3.).normalize(), 0.7);
+    let turn = DAffine3::from_quat(math::rotation(DVec3::new(1., 2., 3.).normalize(), 0.7));
     let similar =
         DAffine3::from_translation(DVec3::new(5., -7., 2.)) * turn * DAffine3::from_scale(DVec3::splat(2.5));
     let mirror = similar * DAffine3::from_scale(DVec3::new(-1., 1., 1.));

@@ -1,6 +1,7 @@
 //! Random splines of every legal shape, from a seed.
 #![allow(dead_code)]
 
+use chordal_nurbs::math;
 use chordal_nurbs::*;
 
 /// SplitMix64: a stream that depends on nothing but its seed.
@@ -28,7 +29,7 @@ impl Random {
     }
     /// Weights from 1e-3 to 1e3 (or gentler), or none.
     pub fn weights(&mut self, count: usize, rational: bool, decades: f64) -> Option<Vec<f64>> {
-        rational.then(|| (0..count).map(|_| 10f64.powf(self.within(-decades, decades))).collect())
+        rational.then(|| (0..count).map(|_| math::pow(10.0, self.within(-decades, decades))).collect())
     }
     pub fn sample(&mut self, range: Range) -> f64 {
         match self.below(10) {

@@ -76,6 +76,7 @@ pub(crate) fn chained(
 mod tests {
     use super::*;
     use chordal_brep::EdgeId;
+    use chordal_nurbs::math;
 
     fn coedge(edge: u32, forward: bool) -> Coedge {
         Coedge { edge: EdgeId(edge), forward, pcurves: Vec::new() }
@@ -113,7 +114,7 @@ mod tests {
         };
         let jump = |a: &Coedge, b: &Coedge| {
             let (from, to): ((f64, f64), (f64, f64)) = (uv(a).1, uv(b).0);
-            (from.0 - to.0).hypot(from.1 - to.1)
+            math::hypot(from.0 - to.0, from.1 - to.1)
         };
         let found = chained(wire, ends(&table), jump);
         assert_eq!((found.closed.len(), found.open.len()), (1, 0));

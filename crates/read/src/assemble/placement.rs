@@ -1,7 +1,7 @@
 //! Placements as files round them.
 
 use chordal_brep::ReadIssue;
-use chordal_nurbs::{DAffine3, DVec3};
+use chordal_nurbs::{DAffine3, DVec3, math};
 use glam::DMat3;
 
 /// Entries that are off by less than this are rounded ones: the axes are meant to be orthogonal.
@@ -19,7 +19,7 @@ pub(crate) fn placement(rows: [[f64; 4]; 3]) -> Result<DAffine3, ReadIssue> {
     if !(axes.is_finite() && column(3).is_finite()) || determinant.abs() < 1e-100 {
         return Err(ReadIssue::FlatPlacement);
     }
-    let scale = determinant.abs().cbrt();
+    let scale = math::cbrt(determinant.abs());
     let mut unit = axes * (1.0 / scale);
     let off = (unit * unit.transpose() - DMat3::IDENTITY).to_cols_array();
     if !off.iter().all(|d| d.abs() < ROUNDED) {

@@ -5,7 +5,7 @@ use super::locations::{Loc, NOWHERE};
 use super::shapes::{Ix, Kind, Shape};
 use crate::assemble::PartBuilder;
 use chordal_brep::{EdgeId, Pcurve, ReadIssue, VertexId};
-use chordal_nurbs::{Curve, Curve2, DVec2, Range, Surface, UvBox};
+use chordal_nurbs::{Curve, Curve2, DVec2, Range, Surface, UvBox, math};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
@@ -88,7 +88,7 @@ impl<'d> Builder<'d> {
 
     /// Keeps the largest tolerance of the part.
     pub(crate) fn note_tolerance(&mut self, tolerance: f64, loc: Loc) {
-        let scale = self.doc.locations.matrix(loc).matrix3.determinant().abs().cbrt();
+        let scale = math::cbrt(self.doc.locations.matrix(loc).matrix3.determinant().abs());
         let known = &mut self.build.part.uncertainty;
         if tolerance.is_finite() && tolerance > 0.0 {
             *known = Some(known.unwrap_or(0.0).max(tolerance * scale));

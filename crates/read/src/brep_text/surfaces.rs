@@ -6,7 +6,7 @@
 use super::curves::{MAX_DEPTH, Parsed, bezier_knots, curve, finite, knot_vector, knots, point, poles};
 use super::tokens::{Stop, Tokens};
 use chordal_brep::{ReadIssue, Real};
-use chordal_nurbs::{DVec2, DVec3, Frame, NurbsSurface, Range, Surface, UvBox};
+use chordal_nurbs::{DVec2, DVec3, Frame, NurbsSurface, Range, Surface, UvBox, math};
 
 /// A surface and how the file's parameters become ours.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,7 +117,7 @@ fn radius_of(value: f64) -> Result<f64, ReadIssue> {
 }
 
 fn cone(place: Placed, radius: f64, angle: f64) -> Result<Patch, ReadIssue> {
-    let (sine, cosine) = angle.sin_cos();
+    let (sine, cosine) = math::sin_cos(angle);
     if !angle.is_finite() || !radius.is_finite() {
         return Err(ReadIssue::NotFinite { what: "radius or half angle" });
     }

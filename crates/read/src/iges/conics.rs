@@ -2,7 +2,7 @@
 
 use super::document::{Doc, Ix, Res};
 use chordal_brep::{ReadIssue, Real};
-use chordal_nurbs::{Curve, DVec2, Frame, Range};
+use chordal_nurbs::{Curve, DVec2, Frame, Range, math};
 use std::f64::consts::TAU;
 
 /// Ends nearer than this part of the radius are one: the whole circle is meant.
@@ -49,8 +49,8 @@ pub(crate) fn conic(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
     let height = args.real()?;
     let mut point = || -> Res<DVec2> { Ok(DVec2::new(args.real()?, args.real()?)) };
     let (start, end) = (point()?, point()?);
-    let angle = 0.5 * k[1].atan2(k[0] - k[2]);
-    let (s, c) = angle.sin_cos();
+    let angle = 0.5 * math::atan2(k[1], k[0] - k[2]);
+    let (s, c) = math::sin_cos(angle);
     let (x, y) = (DVec2::new(c, s), DVec2::new(-s, c));
     let quadratic = |v: DVec2| k[0] * v.x * v.x + k[1] * v.x * v.y + k[2] * v.y * v.y;
     let linear = |v: DVec2| k[3] * v.x + k[4] * v.y;
@@ -93,7 +93,7 @@ impl Turned {
             let (a, b) = (p.sqrt(), q.sqrt());
             let angle = |point| {
                 let l = at(point, self.x, self.y);
-                (l.y / b).atan2(l.x / a)
+                math::atan2(l.y / b, l.x / a)
             };
             let frame = Self::frame(center, self.x, self.y, height);
             let range = ccw(angle(start), angle(end), start.distance(end) <= FULL * a.min(b));
@@ -107,7 +107,7 @@ impl Turned {
             if p > 0.0 { (self.x, p.sqrt(), (-q).sqrt()) } else { (self.y, q.sqrt(), (-p).sqrt()) };
         let x = if (start - center).dot(axis) < 0.0 { -axis } else { axis };
         let mut y = x.perp();
-        let mut t = [start, end].map(|point| (at(point, x, y).y / b).asinh());
+        let mut t = [start, end].map(|point| math::asinh(at(point, x, y).y / b));
         if t[0] > t[1] {
             (y, t) = (-y, [-t[0], -t[1]]);
         }
@@ -150,8 +150,8 @@ mod tests {
 
     /// The conic through `start` and `end` as the record would give it.
     fn conic_of(k: [f64; 6], start: DVec2, end: DVec2) -> (Curve, Range) {
-        let angle = 0.5 * k[1].atan2(k[0] - k[2]);
-        let (s, c) = angle.sin_cos();
+        let angle = 0.5 * math::atan2(k[1], k[0] - k[2]);
+        let (s, c) = math::sin_cos(angle);
         let (x, y) = (DVec2::new(c, s), DVec2::new(-s, c));
         let q = |v: DVec2| k[0] * v.x * v.x + k[1] * v.x * v.y + k[2] * v.y * v.y;
         let l = |v: DVec2| k[3] * v.x + k[4] * v.y;
@@ -175,7 +175,7 @@ mod tests {
     fn ellipses_hyperbolas_and_parabolas_anywhere() {
         let at = |f: &dyn Fn(f64) -> DVec2, s: f64, e: f64| (f(s), f(e));
         // (x − 1)²/9 + (y + 2)²/4 = 1.
-        let ellipse = |t: f64| DVec2::new(1.0 + 3.0 * t.cos(), -2.0 + 2.0 * t.sin());
+        let ellipse = |t: f64| DVec2::new(1.0 + 3.0 * math::cos(t), -2.0 + 2.0 * math::sin(t));
         let (s, e) = at(&ellipse, 0.3, 4.0);
         check([4.0, 0.0, 9.0, -8.0, 36.0, 4.0], s, e);
         // xy = 1, both ways along the third quadrant's branch.

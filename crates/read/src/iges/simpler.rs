@@ -4,7 +4,7 @@
 //! also where a generatrix ends on the axis.
 
 use super::surfaces::Patch;
-use chordal_nurbs::{Curve, DVec2, DVec3, Frame, Range, Surface};
+use chordal_nurbs::{Curve, DVec2, DVec3, Frame, Range, Surface, math};
 
 /// Coordinates are rounded: lengths below this part of the surface's size are none.
 const ROUNDED: f64 = 1e-8;
@@ -101,7 +101,7 @@ impl Turned<'_> {
         if (rb - ra).abs() <= tiny {
             return Some(Surface::Cylinder { frame: self.frame(ha, x), radius: 0.5 * (ra + rb) });
         }
-        let half_angle = ((rb - ra) / (hb - ha)).atan();
+        let half_angle = math::atan((rb - ra) / (hb - ha));
         let (radius, height) = if ra > rb { (ra, ha) } else { (rb, hb) };
         // Within 1e-4 of a plane a cone is none.
         let flat = half_angle.abs() > std::f64::consts::FRAC_PI_2 - 1e-4;

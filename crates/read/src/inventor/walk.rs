@@ -7,8 +7,7 @@ use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::matrix;
 use crate::scene::stage::{self, Placed, Stage};
 use chordal_brep::{LooseKind, ReadIssue};
-use chordal_nurbs::{DAffine3, DVec3};
-use glam::DQuat;
+use chordal_nurbs::{DAffine3, DVec3, math};
 use rustc_hash::FxHashMap;
 
 /// Uses within uses deeper than this refer in a circle.
@@ -238,11 +237,12 @@ fn transform(node: &Node) -> Option<DAffine3> {
         "Rotation" | "Rotor" | "Pendulum" => DAffine3::from_quat(matrix::rotation(node, "rotation", 1.0)),
         "RotationXYZ" => {
             let angle = node.number("angle", 0.0);
-            DAffine3::from_quat(match node.word("axis") {
-                "Y" => DQuat::from_rotation_y(angle),
-                "Z" => DQuat::from_rotation_z(angle),
-                _ => DQuat::from_rotation_x(angle),
-            })
+            let axis = match node.word("axis") {
+                "Y" => DVec3::Y,
+                "Z" => DVec3::Z,
+                _ => DVec3::X,
+            };
+            DAffine3::from_quat(math::rotation(axis, angle))
         }
         _ => return None,
     })

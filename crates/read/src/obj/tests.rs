@@ -1,7 +1,7 @@
 //! Bases as B-splines against their definitions.
 
 use super::basis::{Basis, Direction};
-use chordal_nurbs::{DVec2, DVec4, NurbsCurve};
+use chordal_nurbs::{DVec2, DVec4, NurbsCurve, math};
 use proptest::prelude::*;
 
 /// The value of a segment by the definition of its basis: Σ c_i N_i(t), local t in 0..=1.
@@ -9,15 +9,15 @@ fn by_definition(d: &Direction, points: &[f64], t: f64) -> f64 {
     let n = d.degree;
     let binomial = |i: usize| (0..i).fold(1.0, |b, k| b * (n - k) as f64 / (k + 1) as f64);
     let weight = |i: usize| match d.basis {
-        Basis::Bezier => binomial(i) * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32),
-        Basis::Taylor => t.powi(i as i32),
-        Basis::Matrix => (0..=n).map(|k| d.matrix[i * (n + 1) + k] * t.powi(k as i32)).sum(),
+        Basis::Bezier => binomial(i) * math::powi(t, i as i32) * math::powi(1.0 - t, (n - i) as i32),
+        Basis::Taylor => math::powi(t, i as i32),
+        Basis::Matrix => (0..=n).map(|k| d.matrix[i * (n + 1) + k] * math::powi(t, k as i32)).sum(),
         // Cubic through the middle two points, with half the differences of their neighbours as tangents.
         Basis::Cardinal => [
-            -0.5 * t + t * t - 0.5 * t.powi(3),
-            1.0 - 2.5 * t * t + 1.5 * t.powi(3),
-            0.5 * t + 2.0 * t * t - 1.5 * t.powi(3),
-            -0.5 * t * t + 0.5 * t.powi(3),
+            -0.5 * t + t * t - 0.5 * math::powi(t, 3),
+            1.0 - 2.5 * t * t + 1.5 * math::powi(t, 3),
+            0.5 * t + 2.0 * t * t - 1.5 * math::powi(t, 3),
+            -0.5 * t * t + 0.5 * math::powi(t, 3),
         ][i],
         Basis::Bspline => unreachable!("not made of segments"),
     };

@@ -11,7 +11,7 @@ use chordal_brep::{
     Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, ReadIssue, Shell, ShellId,
     VertexId,
 };
-use chordal_nurbs::{Curve, DAffine3, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface};
+use chordal_nurbs::{Curve, DAffine3, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface, math};
 use std::sync::Arc;
 
 struct Extrusion {
@@ -203,7 +203,7 @@ fn smooth_parts(curve: &NurbsCurve3, own: Range) -> Res<Vec<NurbsCurve3>> {
     for t in curve.breaks_below(1) {
         let (before, after) =
             (curve.point(t) - curve.point(t - step), curve.point(t + step) - curve.point(t));
-        if t > own.start && t < own.end && before.angle_between(after) > CORNER {
+        if t > own.start && t < own.end && math::angle_between(before, after) > CORNER {
             stops.push(t);
         }
     }

@@ -111,10 +111,7 @@ fn layer(mut record: Bytes) -> Res<Layer> {
 /// A colour in sRGB with its transparency; `None` where it is unset.
 pub(super) fn color(data: &mut Bytes) -> Res<Option<Color>> {
     let [r, g, b, transparent] = data.u32()?.to_le_bytes();
-    let linear = |c: u8| {
-        let c = f32::from(c) / 255.0;
-        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-    };
+    let linear = |c: u8| crate::srgb::linear(f64::from(c) / 255.0);
     let opacity = 1.0 - f32::from(transparent) / 255.0;
     let unset = [r, g, b, transparent] == [255; 4];
     Ok((!unset).then(|| Color([linear(r), linear(g), linear(b), opacity])))

@@ -1,7 +1,7 @@
 //! Transforms as nodes write them.
 
 use super::graph::Node;
-use chordal_nurbs::{DAffine3, DVec3};
+use chordal_nurbs::{DAffine3, DVec3, math};
 use glam::{DMat4, DQuat};
 
 /// The transform of a `Transform` node: translation · center · rotation · scale (along scaleOrientation) · −center.
@@ -25,7 +25,7 @@ pub(crate) fn rotation(node: &Node, name: &str, radians: f64) -> DQuat {
     match *node.numbers(name) {
         [x, y, z, angle, ..] if angle.is_finite() => DVec3::new(x, y, z)
             .try_normalize()
-            .map_or(DQuat::IDENTITY, |axis| DQuat::from_axis_angle(axis, angle * radians)),
+            .map_or(DQuat::IDENTITY, |axis| math::rotation(axis, angle * radians)),
         _ => DQuat::IDENTITY,
     }
 }

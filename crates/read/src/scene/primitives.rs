@@ -4,7 +4,7 @@ use crate::trimmed::{self, Look};
 use chordal_brep::{
     BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, Part, Source, Vertex, VertexId,
 };
-use chordal_nurbs::{Curve, DVec3, Frame, Range, Surface};
+use chordal_nurbs::{Curve, DVec3, Frame, Range, Surface, math};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -84,7 +84,7 @@ pub(crate) fn cone(part: &mut Part, radius: f64, height: f64, which: Faces, look
     let mut maker = Maker { part, look, faces: Vec::new() };
     let low = maker.circle(-0.5 * height, radius);
     if which.side {
-        let half_angle = -(radius / height).atan();
+        let half_angle = -math::atan(radius / height);
         let surface = Surface::Cone { frame: axis_frame(-0.5 * height), radius, half_angle };
         maker.face(surface, true, vec![ring(low, true)]);
     }

@@ -3,7 +3,7 @@
 use super::{Piece, Scale, TrimLoop};
 use crate::assemble::Notes;
 use chordal_brep::{Percent, ReadIssue};
-use chordal_nurbs::{DVec2, Range};
+use chordal_nurbs::{DVec2, Range, math};
 
 /// Ends of pieces nearer together than this share of the domain meet: files of 32-bit numbers round to about this.
 /// Wider gaps are bridged, and said to be.
@@ -126,7 +126,7 @@ fn cut_at_corners(piece: &Piece, scale: &Scale) -> Vec<Piece> {
     let direction = |a: f64, b: f64| scale.unit(piece.curve.point(b)) - scale.unit(piece.curve.point(a));
     let corner = |t: f64| {
         let (before, after) = (direction(t - step, t), direction(t, t + step));
-        before.perp_dot(after).atan2(before.dot(after)).abs() > CORNER
+        math::atan2(before.perp_dot(after), before.dot(after)).abs() > CORNER
     };
     let still = |a: f64, b: f64| {
         let at = |k: u32| piece.curve.point(a + (b - a) * f64::from(k) / 4.0);

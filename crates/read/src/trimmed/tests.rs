@@ -1,6 +1,6 @@
 use super::*;
 use chordal_brep::{Coedge, EdgeId};
-use chordal_nurbs::{DVec3, NurbsCurve2, NurbsSurface};
+use chordal_nurbs::{DVec3, NurbsCurve2, NurbsSurface, math};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// A bumpy patch over 0..2 × 0..3.
@@ -9,7 +9,7 @@ fn patch() -> Arc<Surface> {
     for i in 0..4 {
         for j in 0..4 {
             let (x, y) = (f64::from(i), f64::from(j));
-            points.push(DVec3::new(x, y, (x * 1.1).sin() * (y * 0.7).cos()));
+            points.push(DVec3::new(x, y, math::sin(x * 1.1) * math::cos(y * 0.7)));
         }
     }
     let knots = |end: f64| vec![0.0, 0.0, 0.0, 0.0, end, end, end, end];
@@ -228,7 +228,7 @@ fn a_closed_surface_has_loops_at_its_ends_only() {
 #[test]
 fn a_piece_along_both_sides_of_a_seam_is_one_edge() {
     let wavy: Vec<DVec2> = (0..=40)
-        .map(|k| DVec2::new(f64::from(k) / 10.0, 0.7 + 0.1 * (PI * f64::from(k) / 20.0).sin()))
+        .map(|k| DVec2::new(f64::from(k) / 10.0, 0.7 + 0.1 * math::sin(PI * f64::from(k) / 20.0)))
         .collect();
     let pieces = vec![
         Piece::line(DVec2::ZERO, DVec2::new(4.0, 0.0)),

@@ -1,6 +1,6 @@
 use crate::testing::read_bytes;
 use chordal_brep::{FaceGeometry, Loop, Model};
-use chordal_nurbs::{DVec2, DVec3, Surface};
+use chordal_nurbs::{DVec2, DVec3, Surface, math};
 
 fn classic(text: &str) -> Model {
     read_bytes(format!("#X3D V3.3 utf8\nPROFILE Full\nCOMPONENT NURBS : 4\n{text}").as_bytes(), "test")
@@ -121,7 +121,7 @@ fn vrml97_trims_a_surface_inside_another_node() {
 fn closed_directions_without_knots_are_periodic() {
     // A hexagon repeated along v; its first point comes again at the end.
     let ring: Vec<[f64; 2]> = (0..7)
-        .map(|k| (f64::from(k % 6) * std::f64::consts::FRAC_PI_3).sin_cos())
+        .map(|k| math::sin_cos(f64::from(k % 6) * std::f64::consts::FRAC_PI_3))
         .map(|(s, c)| [c, s])
         .collect();
     let row = |z: f64| ring.iter().map(|p| format!("{} {} {z}, ", p[0], p[1])).collect::<String>();

@@ -3,7 +3,7 @@
 //! pass over them.
 
 use super::{Probes, Sampling};
-use chordal_nurbs::{Curve, Range, Surface};
+use chordal_nurbs::{Curve, Range, Surface, math};
 
 /// A change of direction of more than this, in radians, is a corner. Smaller ones are rounding of the file.
 const CORNER: f64 = 1e-3;
@@ -25,7 +25,7 @@ pub(super) struct Piece {
 /// Cuts a range at the corners of the curve and at `stops`.
 pub(super) fn smooth_pieces(curve: &Curve, range: Range, stops: &[f64]) -> Vec<Piece> {
     let step = 1e-7 * range.length();
-    let kink = |t: f64| curve.jet(t - step).d1.angle_between(curve.jet(t + step).d1);
+    let kink = |t: f64| math::angle_between(curve.jet(t - step).d1, curve.jet(t + step).d1);
     let corners = curve.breaks(range).into_iter().map(|t| (t, kink(t)));
     let mut cuts: Vec<(f64, bool)> =
         corners.filter(|&(_, kink)| kink > CORNER).map(|(t, kink)| (t, kink <= SOFT)).collect();

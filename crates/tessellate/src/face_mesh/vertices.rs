@@ -3,7 +3,7 @@
 
 use super::FaceMesh;
 use crate::metric::{Metric, Sizing};
-use chordal_nurbs::{DVec2, DVec3, SurfaceJet, UvBox};
+use chordal_nurbs::{DVec2, DVec3, SurfaceJet, UvBox, math};
 
 /// How much the sideways bend of parameter lines counts against their bend along the normal when triangles
 /// are shaped. Without it, long edges cut across a surface beside its parameter lines; at its full weight,
@@ -61,7 +61,7 @@ impl FaceMesh<'_, '_> {
         let points = || self.chart.points.iter().map(|point| self.position(point.key));
         let middle = points().sum::<DVec3>() / self.chart.points.len().max(1) as f64;
         let radius = points().fold(f64::MIN_POSITIVE, |m, p| m.max(p.distance(middle)));
-        self.vertices.floor = (LEAST_CHORDS / radius).powi(2);
+        self.vertices.floor = math::square(LEAST_CHORDS / radius);
         for i in 0..self.mesh.points.len() {
             self.measure(self.mesh.points[i]);
         }

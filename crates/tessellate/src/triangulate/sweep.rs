@@ -247,6 +247,7 @@ impl Sweep<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chordal_nurbs::math;
     use proptest::prelude::*;
 
     fn area(points: &[DVec2], t: &[u32; 3]) -> f64 {
@@ -299,7 +300,7 @@ mod tests {
         let p: Vec<DVec2> = (0..n)
             .map(|i| {
                 let t = std::f64::consts::TAU * f64::from(i) / f64::from(n);
-                DVec2::from_angle(t) * (2.0 + (5.0 * t).sin())
+                math::direction(t) * (2.0 + math::sin(5.0 * t))
             })
             .collect();
         let triangles = check(&p, &[(0, n as u32)], shoelace(&p));
@@ -343,11 +344,11 @@ mod tests {
         fn star_polygons_with_a_hole(radii in prop::collection::vec(0.6f64..2.0, 3..60), turn in 0.0f64..6.3) {
             let n = radii.len();
             let mut p: Vec<DVec2> = (0..n)
-                .map(|i| DVec2::from_angle(turn + std::f64::consts::TAU * i as f64 / n as f64) * radii[i])
+                .map(|i| math::direction(turn + std::f64::consts::TAU * i as f64 / n as f64) * radii[i])
                 .collect();
             let outer = shoelace(&p);
             // The hole is small enough to stay inside even a triangle of the smallest radius.
-            p.extend((0..5).map(|i| DVec2::from_angle(turn - 1.3 * f64::from(i)) * 0.25));
+            p.extend((0..5).map(|i| math::direction(turn - 1.3 * f64::from(i)) * 0.25));
             let hole = shoelace(&p[n..]);
             prop_assume!(hole < 0.0);
             check(&p, &[(0, n as u32), (n as u32, n as u32 + 5)], outer + hole);

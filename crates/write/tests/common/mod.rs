@@ -5,7 +5,7 @@ use chordal_mesh::{
     Corner, FaceMesh, Origin, PartMesh, PassThrough, Scene, SceneNode, ScenePart, TriangleSoup, import_bytes,
 };
 use chordal_write::{Format, WriteOptions, WriteSummary, write_to};
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -87,6 +87,12 @@ pub fn cube() -> Scene {
     single(part("cube", box_mesh(DVec3::ZERO, DVec3::ONE)), DAffine3::IDENTITY)
 }
 
+/// A rotation whose numbers are the same on every platform.
+fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
+    let (sine, cosine) = libm::sincos(0.5 * angle);
+    DAffine3::from_quat(DQuat::from_vec4((axis * sine).extend(cosine)))
+}
+
 /// Two parts: a brick placed three times (turned and moved, mirrored below an assembly, coloured by one), and
 /// a sheet that came tessellated. Some faces have colours and names. Lengths are inches turned into
 /// millimetres by the root.
@@ -106,9 +112,9 @@ pub fn assembly() -> Scene {
         color: Some(GLASS),
     });
     let inch = DAffine3::from_scale(DVec3::splat(25.4));
-    let turned = DAffine3::from_rotation_z(0.3) * DAffine3::from_translation(DVec3::new(5.0, -1.0, 0.25));
+    let turned = rotation(DVec3::Z, 0.3) * DAffine3::from_translation(DVec3::new(5.0, -1.0, 0.25));
     let mirror = DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0));
-    let moved = DAffine3::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, 1.1);
+    let moved = rotation(DVec3::new(1.0, 2.0, 2.0) / 3.0, 1.1);
     let mut painted = node("painted", DAffine3::from_translation(DVec3::new(0.0, 9.0, 0.0)), Some(0), &[4]);
     painted.color = Some(GLASS);
     Scene {

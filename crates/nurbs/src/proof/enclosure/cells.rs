@@ -6,6 +6,7 @@
 
 use super::net::Patch;
 use super::{Cell, Piece, net, overlapped};
+use crate::math;
 use crate::{NurbsSurface, Range, UvBox};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
@@ -119,7 +120,7 @@ impl CellTable {
     fn levels(&self, k: usize) -> &Levels {
         self.cells[k].0.get_or_init(|| {
             // The slack of a cell shrinks with the fourth power of its size.
-            let finest = (self.patches[k].slack() / (SLACK * self.resolution)).log2() / 4.0;
+            let finest = math::log2(self.patches[k].slack() / (SLACK * self.resolution)) / 4.0;
             let finest = finest.ceil().clamp(0.0, MAX_LEVEL as f64) as usize;
             Levels { finest, levels: vec![OnceLock::new(); (finest + 1) * (finest + 1)] }
         })

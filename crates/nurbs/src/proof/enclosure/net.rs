@@ -6,6 +6,7 @@
 
 use super::{Ball4, Cell};
 use crate::basis::Basis;
+use crate::math;
 use crate::{BezierPatch, UvBox};
 use glam::{DVec2, DVec3, DVec4};
 
@@ -238,7 +239,7 @@ impl<'a> Nets<'a> {
         let [m, n] = d.degree;
         let points = self.points(d);
         let mut sum = DVec4::ZERO;
-        let mut scale_u = 0.5f64.powi(m as i32 + n as i32);
+        let mut scale_u = math::powi(0.5, m as i32 + n as i32);
         for i in 0..=m {
             let mut scale = scale_u;
             for j in 0..=n {

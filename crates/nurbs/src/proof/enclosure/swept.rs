@@ -6,6 +6,7 @@
 //! extent they bound how third derivatives stray.
 
 use super::{Piece, SurfaceBounds, overlapped};
+use crate::math;
 use crate::{Curve, Range, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3};
 
@@ -35,7 +36,7 @@ pub(super) fn elementary_thirds(surface: &Surface, b: UvBox, jet: &SurfaceJet, h
             Thirds::around(frame.z, jet, half, (DVec3::ZERO, 0.0), [radius.abs(), 0.0, 0.0, 0.0])
         }
         Surface::Cone { frame, radius, half_angle } => {
-            let t = half_angle.tan();
+            let t = math::tan(*half_angle);
             let r = (radius + b.min.y * t).abs().max((radius + b.max.y * t).abs());
             Thirds::around(frame.z, jet, half, (DVec3::ZERO, 0.0), [r, t.abs(), 0.0, 0.0])
         }
@@ -152,7 +153,7 @@ impl ProfileTable {
 
 /// A vector turned about a unit axis.
 fn rotated(d: DVec3, axis: DVec3, angle: f64) -> DVec3 {
-    let (sine, cosine) = angle.sin_cos();
+    let (sine, cosine) = math::sin_cos(angle);
     d * cosine + axis.cross(d) * sine + axis * (axis.dot(d) * (1.0 - cosine))
 }
 

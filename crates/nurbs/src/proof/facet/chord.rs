@@ -1,6 +1,7 @@
 //! The distance between the image of a segment of parameter space and its chord.
 
 use super::form::Form;
+use crate::math;
 use crate::{Piece, SurfaceBounds, UvBox};
 use glam::{DVec2, DVec3};
 
@@ -41,7 +42,7 @@ pub(super) fn bound(
         let [a, b] = axes.map(|w| {
             Form::new(pieces, at(i).midpoint(at(i + 1)), w, xyz[0]).largest_along(d) / (8.0 * least_weight)
         });
-        let between = a.hypot(b) + 0.25 * kink.dot(d.abs());
+        let between = math::hypot(a, b) + 0.25 * kink.dot(d.abs());
         if parts == 1 {
             return between;
         }

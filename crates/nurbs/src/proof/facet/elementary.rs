@@ -2,6 +2,7 @@
 
 use super::{Facet, FacetBound, lattice};
 use crate::Frame;
+use crate::math;
 use glam::DVec3;
 
 /// The largest angle in radians by which a facet may turn round an axis.
@@ -17,8 +18,8 @@ fn cone_chord(a: f64, b: f64, turn: f64) -> f64 {
     if a <= 0.0 || b <= 0.0 {
         return 0.0;
     }
-    let (sine, cosine) = (turn * 0.5).sin_cos();
-    4.0 * sine * sine / (1.0 / a.sqrt() + 1.0 / b.sqrt()).powi(2) / (1.0 + cosine.abs())
+    let (sine, cosine) = math::sin_cos(turn * 0.5);
+    4.0 * sine * sine / math::square(1.0 / a.sqrt() + 1.0 / b.sqrt()) / (1.0 + cosine.abs())
 }
 
 /// Cylinders and cones, by their radii at the corners.
@@ -65,7 +66,7 @@ pub(super) fn cone(facet: &Facet, radii: [f64; 3], cosine: f64) -> FacetBound {
     let spread = if same_radius || turn == 0.0 {
         1.0
     } else {
-        ((last - middle).sin() + (middle - first).sin()) / turn.sin()
+        (math::sin(last - middle) + math::sin(middle - first)) / math::sin(turn)
     };
     FacetBound { error: cosine * cone_chord(sorted[0], sorted[1], turn) * spread, edges }
 }
@@ -110,15 +111,16 @@ pub(super) fn torus(facet: &Facet, frame: &Frame, major: f64, minor: f64, enough
     if half_turn > 0.5 * MAX_TURN || v_turn > MAX_TURN {
         return FacetBound::NONE;
     }
-    let (sine, cosine) = (0.5 * (u_low + u_high)).sin_cos();
+    let (sine, cosine) = math::sin_cos(0.5 * (u_low + u_high));
     let depth = |p: DVec3| {
         let q = p.truncate().length() - major;
         (q * q + p.z * p.z).sqrt() - minor
     };
-    let nearest = local.iter().map(|p| p.truncate().length()).fold(f64::INFINITY, f64::min) * half_turn.cos();
+    let nearest =
+        local.iter().map(|p| p.truncate().length()).fold(f64::INFINITY, f64::min) * math::cos(half_turn);
     let second = |d: DVec3, rho: f64| {
-        let radial = (d.x * cosine + d.y * sine).abs() + d.truncate().length() * half_turn.sin();
-        let across = (radial + d.z.abs()).powi(2).min(d.length_squared());
+        let radial = (d.x * cosine + d.y * sine).abs() + d.truncate().length() * math::sin(half_turn);
+        let across = math::square(radial + d.z.abs()).min(d.length_squared());
         // Along the circle: cos θ/q, at most 1/q, and 0 where the facet is seen from above.
         across / rho + d.length_squared() / nearest
     };

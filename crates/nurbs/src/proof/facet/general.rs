@@ -25,6 +25,7 @@ use super::refine_bound::{Closer, FINEST};
 use super::setting::{Modelled, Setting};
 use super::slope::{distortion, steepness, weight_slope};
 use super::{Facet, FacetBound};
+use crate::math;
 use crate::{Piece, SurfaceBounds, UvBox};
 use glam::{DVec2, DVec3};
 
@@ -251,11 +252,11 @@ fn combine(facet: &Facet, parts: &Parts, slope: f64) -> FacetBound {
     for i in 0..3 {
         let shift = parts.sideways[i];
         let leaning = if slope < 0.5 { parts.along + 2.0 * slope * shift } else { f64::INFINITY };
-        error = error.max(leaning.min(parts.along.hypot(shift)));
+        error = error.max(leaning.min(math::hypot(parts.along, shift)));
         if facet.sag[i].is_some() {
             // The image of the chord and the boundary curve both lie near the edge, which is convex: so does
             // what is between.
-            edges[i] = edges[i].hypot(parts.bends[i]);
+            edges[i] = math::hypot(edges[i], parts.bends[i]);
             error = error.max(edges[i]);
         }
     }

@@ -2,6 +2,7 @@
 //! plane.
 
 use super::setting::{Modelled, Setting};
+use crate::math;
 use glam::DVec2;
 
 /// What a changing weight adds to the slope of (g/w): at most |g/w|·|w'|/w per length.
@@ -23,7 +24,7 @@ pub(super) fn weight_slope(setting: &Setting, rate: DVec2, error: f64) -> f64 {
 /// and its slope is that over T divided by what is left.
 pub(super) fn distortion(setting: &Setting, across: [&Modelled; 2], rate: DVec2) -> f64 {
     let [a, b] = across.map(|f| steepness(f, setting) + weight_distortion(setting, f, rate));
-    a.hypot(b)
+    math::hypot(a, b)
 }
 
 /// What a changing weight adds to it: of w·e the error of interpolation leaves out −Σ λ_i λ_j (w_i − w_j)(l_i

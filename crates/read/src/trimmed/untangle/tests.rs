@@ -2,7 +2,7 @@ use crate::Winding;
 use crate::assemble::Notes;
 use crate::trimmed::{Piece, Role, Scale, TrimLoop, chain, meet, nest, polygon};
 use chordal_brep::{ReadIssue, Source};
-use chordal_nurbs::{Curve2, DVec2, DVec3, Frame2, NurbsSurface, Surface};
+use chordal_nurbs::{Curve2, DVec2, DVec3, Frame2, NurbsSurface, Surface, math};
 use proptest::prelude::*;
 
 /// A flat patch over the unit square.
@@ -49,7 +49,7 @@ fn winding(trim: &TrimLoop, p: DVec2) -> i32 {
         trim.pieces.iter().flat_map(|piece| (0..64).map(|k| piece.at(f64::from(k) / 64.0))).collect();
     let turn = |i: usize| {
         let (a, b) = (points[i] - p, points[(i + 1) % points.len()] - p);
-        a.perp_dot(b).atan2(a.dot(b))
+        math::atan2(a.perp_dot(b), a.dot(b))
     };
     ((0..points.len()).map(turn).sum::<f64>() / std::f64::consts::TAU).round() as i32
 }
