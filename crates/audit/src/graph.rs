@@ -70,6 +70,7 @@ fn touch(s: &Side, t: &Side) -> bool {
 mod tests {
     use super::*;
     use chordal_mesh::Corner;
+    use chordal_nurbs::math;
 
     /// A face with a vertex of its own at every point.
     fn mesh(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> (PartMesh, FaceMesh) {
@@ -101,7 +102,7 @@ mod tests {
         // A helical strip of one turn and a quarter about the z axis, seen from above.
         let at = |i: usize, r: f64| {
             let angle = i as f64 * 0.25 * std::f64::consts::FRAC_PI_2;
-            [r * angle.cos(), r * angle.sin(), 0.01 * i as f64]
+            [r * math::cos(angle), r * math::sin(angle), 0.01 * i as f64]
         };
         let strip = |steps: usize| {
             let points: Vec<[f64; 3]> = (0..=steps).flat_map(|i| [at(i, 1.0), at(i, 2.0)]).collect();
