@@ -1,6 +1,6 @@
 //! Which file every input is written to.
 
-use crate::args::MeshArgs;
+use crate::args::{FormatArg, MeshArgs};
 use crate::inputs::Input;
 use chordal::{OutputFormat, Report};
 use std::collections::btree_map::Entry;
@@ -47,13 +47,7 @@ pub fn plan(args: &MeshArgs, inputs: &[Input]) -> Result<Outputs, String> {
         }
         Some(out) => {
             folder_exists(out.parent())?;
-            let format = args.format.map(|f| f.format()).or_else(|| by_extension(out));
-            let format = format.ok_or_else(|| {
-                format!(
-                    "{}: unsupported output extension (supported: stl, ply, obj, glb, gltf, 3mf)",
-                    out.display()
-                )
-            })?;
+            let format = format_of(out, args.format.map(FormatArg::format))?;
             one(inputs, format, Target::File(out.clone()), &out.display().to_string())?
         }
         None => beside(inputs, args.format()),
@@ -72,8 +66,24 @@ fn is_folder(out: &Path) -> bool {
     out.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]) || out.is_dir()
 }
 
-fn by_extension(path: &Path) -> Option<OutputFormat> {
-    path.extension().and_then(|e| e.to_str()).and_then(OutputFormat::from_extension)
+/// The format of an output file: the one given, or that of the extension.
+///
+/// # Errors
+/// One sentence where neither names a format, or where they name different ones.
+pub fn format_of(out: &Path, given: Option<OutputFormat>) -> Result<OutputFormat, String> {
+    let extension = out.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    match (given, OutputFormat::from_extension(extension)) {
+        (Some(given), Some(named)) if given.extension() != named.extension() => Err(format!(
+            "{}: --format names {given}, and the extension .{extension} names {named}; they must agree",
+            out.display()
+        )),
+        (Some(given), _) => Ok(given),
+        (None, Some(named)) => Ok(named),
+        (None, None) => Err(format!(
+            "{}: unsupported output extension (supported: stl, ply, obj, glb, gltf, 3mf)",
+            out.display()
+        )),
+    }
 }
 
 fn one(inputs: &[Input], format: OutputFormat, target: Target, name: &str) -> Result<Plan, String> {
@@ -195,6 +205,16 @@ fn folder_exists(folder: Option<&Path>) -> Result<(), String> {
     }
 }
 
+/// A mesh given to be meshed has the name that its mesh would have.
+fn mesh_hint(output: &Path) -> &'static str {
+    let is_obj = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
+    if is_obj {
+        ""
+    } else {
+        ", and a mesh already; `chordal check` examines meshes, `chordal sew` joins their borders"
+    }
+}
+
 fn not_an_input(target: &Target, inputs: &[Input]) -> Result<(), String> {
     let Target::File(output) = target else { return Ok(()) };
     let Ok(real) = output.canonicalize() else { return Ok(()) };
@@ -203,7 +223,7 @@ fn not_an_input(target: &Target, inputs: &[Input]) -> Result<(), String> {
         Input::File { path, .. } => path.canonicalize().is_ok_and(|path| path == real),
     };
     if inputs.iter().any(is_output) {
-        return Err(format!("{}: the output is one of the inputs", output.display()));
+        return Err(format!("{}: the output is one of the inputs{}", output.display(), mesh_hint(output)));
     }
     Ok(())
 }
@@ -225,6 +245,16 @@ pub fn add_output(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_format_must_agree_with_the_extension() {
+        use OutputFormat::{Glb, StlAscii, StlBinary};
+        let of = |name: &str, given| format_of(Path::new(name), given).ok();
+        assert_eq!(of("a.STL", None), Some(StlBinary));
+        assert_eq!(of("a.stl", Some(StlAscii)), Some(StlAscii));
+        assert_eq!(of("a.mesh", Some(Glb)), Some(Glb));
+        assert_eq!((of("a.stl", Some(Glb)), of("a.mesh", None), of("a", None)), (None, None, None));
+    }
 
     #[test]
     fn names_do_not_collide() {

@@ -75,7 +75,23 @@ mod drawing {
         }
     }
 
+    /// An option that has no effect is refused.
+    fn check(args: &RenderArgs) -> Result<(), String> {
+        let is_mesh = matches!(args.mode, ModeArg::Mesh);
+        if is_mesh && (args.trim.is_some() || args.normals.is_some()) {
+            let option = if args.trim.is_some() { "trim" } else { "normals" };
+            return Err(format!("--{option} needs --mode nurbs: it has no effect on a mesh"));
+        }
+        if args.fit && !args.camera.contains(',') {
+            return Err(
+                "--fit needs a camera with a place of its own: the named ones see the whole model".into()
+            );
+        }
+        Ok(())
+    }
+
     fn picture(args: &RenderArgs) -> Result<RenderOptions, String> {
+        check(args)?;
         let of = |option: &str, reason: String| format!("--{option}: {reason}");
         let view: View = args.camera.parse().map_err(|e| of("camera", e))?;
         let background: Background = args.background.parse().map_err(|e| of("background", e))?;
@@ -100,11 +116,11 @@ mod drawing {
             .with_lines(!args.no_lines)
             .with_background(background)
             .with_section(section)
-            .with_trim(match args.trim {
+            .with_trim(match args.trim.unwrap_or(TrimArg::Exact) {
                 TrimArg::Exact => Trim::Exact,
                 TrimArg::Texture => Trim::Texture,
             })
-            .with_normals(match args.normals {
+            .with_normals(match args.normals.unwrap_or(NormalsArg::Exact) {
                 NormalsArg::Exact => Normals::Exact,
                 NormalsArg::Interpolated => Normals::Interpolated,
             }))

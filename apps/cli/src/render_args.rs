@@ -29,12 +29,12 @@ pub struct RenderArgs {
     pub zoom: ZoomArg,
     #[arg(long, value_enum, default_value = "mesh")]
     pub mode: ModeArg,
-    /// With --mode nurbs: how faces are trimmed.
-    #[arg(long, value_enum, default_value = "exact")]
-    pub trim: TrimArg,
-    /// With --mode nurbs: the normals that faces are lit by.
-    #[arg(long, value_enum, default_value = "exact")]
-    pub normals: NormalsArg,
+    /// With --mode nurbs: how faces are trimmed [default: exact].
+    #[arg(long, value_enum)]
+    pub trim: Option<TrimArg>,
+    /// With --mode nurbs: the normals that faces are lit by [default: exact].
+    #[arg(long, value_enum)]
+    pub normals: Option<NormalsArg>,
     #[arg(long, value_enum, default_value = "shaded")]
     pub style: StyleArg,
     /// Leave out the lines of the style.

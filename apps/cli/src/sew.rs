@@ -2,6 +2,7 @@
 
 use crate::args::{FormatArg, SewArgs};
 use crate::exit::{Exit, print, say};
+use crate::outputs::format_of;
 use chordal::brep::issue::words::{count, length_mm};
 use chordal::mesh_file::{MeshSewing, MeshSewingReport, sew_mesh_file};
 use std::fmt::Write;
@@ -11,10 +12,17 @@ const SHOWN: usize = 8;
 
 /// Runs the command.
 pub fn run(args: &SewArgs) -> Exit {
+    let format = match format_of(&args.output, args.format.map(FormatArg::format)) {
+        Ok(format) => format,
+        Err(sentence) => {
+            say(&sentence);
+            return Exit::Nothing;
+        }
+    };
     let options = MeshSewing::default()
         .with_tolerance(args.tolerance)
         .with_unit(args.unit)
-        .with_format(args.format.map(FormatArg::format))
+        .with_format(Some(format))
         .with_levels(args.levels);
     match sew_mesh_file(&args.mesh, &args.output, &options) {
         Ok(found) => {

@@ -8,6 +8,40 @@ use std::path::Path;
 use std::process::Command;
 
 #[test]
+fn options_without_effect_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let bracket = model("bracket");
+    let refused = |line: &str, paths: &[&Path], word: &str| {
+        let ran = run(line, paths).exits(&[2]).says_one_sentence();
+        assert!(ran.stderr.contains(word), "{line}: {}", ran.stderr);
+    };
+    refused("mesh {} -o {} --winding even", &[&bracket, &at("a.stl")], "no effect on STEP");
+    refused("mesh {} -o {} --winding odd", &[&bracket, &at("a.stl")], "no effect on STEP");
+    refused("mesh {} -o {} --format glb", &[&bracket, &at("a.stl")], "must agree");
+    refused("mesh {} -o {} --edges", &[&bracket, &at("a.stl")], "--edges");
+    refused("mesh {} -o {} --quads", &[&bracket, &at("a.stl")], "--quads");
+    refused("compare {} --strategy grid", &[&bracket], "--strategies");
+    refused("info {} --full --json", &[&bracket], "--full");
+    assert_eq!(files_in(folder.path()), Vec::<String>::new());
+}
+
+#[test]
+fn a_mesh_given_to_be_meshed_gets_a_hint() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for extension in ["stl", "ply", "glb", "3mf"] {
+        let mesh = folder.path().join("a").with_extension(extension);
+        run("mesh {} -o {} -q", &[&model("bracket"), &mesh]).exits(&[0]);
+        let ran = run("mesh {}", &[&mesh]).exits(&[2]).says_one_sentence();
+        assert!(ran.stderr.contains("`chordal check`"), "{}", ran.stderr);
+    }
+    let ascii = folder.path().join("b.stl");
+    run("mesh {} -o {} --format stl-ascii -q", &[&model("bracket"), &ascii]).exits(&[0]);
+    let ran = run("mesh {} -o {}", &[&ascii, &folder.path().join("c.obj")]).exits(&[2]).says_one_sentence();
+    assert!(ran.stderr.contains("(STL)"), "{}", ran.stderr);
+}
+
+#[test]
 fn help_and_version_are_data() {
     for line in ["--help", "-h", "mesh --help", "info --help", "check --help", "bench --help", "--version"] {
         let ran = run(line, &[]).exits(&[0]);

@@ -25,6 +25,20 @@ pub enum ReadError {
          VRML, X3D, free-form OBJ, 3DM, and JSON of Chordal or geomdl"
     )]
     UnknownFormat,
+    /// The content is a mesh of triangles and no CAD model.
+    #[error(
+        "a triangle mesh ({format}) is no CAD model; `chordal check` examines a mesh, `chordal sew` joins its borders"
+    )]
+    TriangleMesh {
+        /// The name of the mesh format.
+        format: &'static str,
+    },
+    /// A convention of trimming loops is given, and the format does not need one.
+    #[error("the option winding has no effect on {format}, which distinguishes outer loops from holes")]
+    NoWinding {
+        /// The format.
+        format: Format,
+    },
     /// The reader of the format is a feature that this build does not have.
     #[error("this build has no reader for {format}")]
     NotCompiled {

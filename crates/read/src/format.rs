@@ -40,6 +40,12 @@ impl Format {
         })
     }
 
+    /// Whether files of this format leave open which trimming loops are holes, so that
+    /// [`crate::ReadOptions::winding`] decides.
+    pub fn has_winding(self) -> bool {
+        matches!(self, Format::Inventor | Format::X3d)
+    }
+
     /// The name that people know.
     pub fn name(self) -> &'static str {
         match self {

@@ -59,6 +59,7 @@ mod settle_surfaces;
 mod srgb;
 #[cfg(feature = "step")]
 mod step;
+mod triangle_mesh;
 mod trimmed;
 mod unpack;
 #[cfg(feature = "scene")]
@@ -101,7 +102,10 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(ReadError::Empty);
     }
-    let format = format.or_else(|| Format::of(&bytes)).ok_or(ReadError::UnknownFormat)?;
+    let format = format.or_else(|| Format::of(&bytes)).ok_or_else(|| unknown(&bytes))?;
+    if options.winding.is_some() && !format.has_winding() {
+        return Err(ReadError::NoWinding { format });
+    }
     let mut model = format.read(&bytes, options)?;
     settle_surfaces::make_sizes_positive(&mut model);
     settle_surfaces::leave_out_still_spans(&mut model);
@@ -110,20 +114,29 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
     Ok(model)
 }
 
+/// Content that no reader knows: often a mesh.
+fn unknown(bytes: &[u8]) -> ReadError {
+    match triangle_mesh::format_of(bytes) {
+        Some(format) => ReadError::TriangleMesh { format },
+        None => ReadError::UnknownFormat,
+    }
+}
+
 /// What a file leaves open.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Which points trimming loops keep, in formats that do not say.
-    pub winding: Winding,
+    /// Which points trimming loops keep, in formats that do not say ([`Format::has_winding`]); `None` is
+    /// [`Winding::Odd`]. Files of other formats are refused where it is given: it would have no effect.
+    pub winding: Option<Winding>,
     /// The name of the model, and of parts that have none of their own.
     pub name: String,
 }
 
 impl ReadOptions {
     /// Sets which points trimming loops keep, in formats that do not say.
-    pub fn with_winding(mut self, winding: Winding) -> Self {
-        self.winding = winding;
+    pub fn with_winding(mut self, winding: impl Into<Option<Winding>>) -> Self {
+        self.winding = winding.into();
         self
     }
 

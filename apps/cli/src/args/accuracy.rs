@@ -44,9 +44,9 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub sew: Option<Sewing>,
     /// Which points trimming loops keep, where the format does not distinguish outer loops from holes (Open Inventor,
-    /// VRML, X3D).
-    #[arg(long, value_enum, default_value = "odd")]
-    pub winding: WindingArg,
+    /// VRML, X3D; refused for others) [default: odd].
+    #[arg(long, value_enum)]
+    pub winding: Option<WindingArg>,
     /// The format of the input [default: recognised by content].
     #[arg(long, value_name = "FORMAT", value_parser = input_formats())]
     pub input_format: Option<InputFormat>,
@@ -92,10 +92,10 @@ impl AccuracyArgs {
 
     /// As options of the readers.
     pub fn read_options(&self) -> ReadOptions {
-        let winding = match self.winding {
+        let winding = self.winding.map(|winding| match winding {
             WindingArg::Odd => Winding::Odd,
             WindingArg::Even => Winding::Even,
-        };
+        });
         ReadOptions::default().with_winding(winding)
     }
 }

@@ -19,7 +19,7 @@ pub struct MeshArgs {
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub accuracy: AccuracyArgs,
-    /// The format of the output [default: by the extension of OUT, else glb].
+    /// The format of the output; it must agree with the extension of OUT [default: by that extension, else glb].
     #[arg(long, value_enum)]
     pub format: Option<FormatArg>,
     /// Unit of the written coordinates: um, mm, cm, m, in or ft [default: mm, in GLB and glTF m].

@@ -12,8 +12,8 @@ pub struct InfoArgs {
     /// A CAD file, or `-` for standard input.
     #[arg(value_name = "IN")]
     pub input: PathBuf,
-    /// Show the whole assembly tree and every part and problem.
-    #[arg(long)]
+    /// Show the whole assembly tree and every part and problem, as --json always does.
+    #[arg(long, conflicts_with = "json")]
     pub full: bool,
     /// The format of the input [default: recognised by content].
     #[arg(long, value_name = "FORMAT", value_parser = input_formats())]

@@ -30,7 +30,7 @@ pub(crate) fn looks_like_inventor(bytes: &[u8]) -> bool {
 pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Model, ReadError> {
     let line = header(bytes);
     let mut graph = if line.contains("binary") { binary::parse(bytes, &line) } else { text::parse(bytes) };
-    graph.winding = options.winding;
+    graph.winding = options.winding.unwrap_or_default();
     let mut stage = Stage::new(bytes.len());
     walk::walk(&graph, &mut stage);
     let schema = line.trim_start_matches('#').trim().to_owned();

@@ -49,7 +49,7 @@ pub(crate) fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Mo
         xml::parse(bytes)
     };
     prototypes::expand(&mut graph);
-    graph.winding = options.winding;
+    graph.winding = options.winding.unwrap_or_default();
     let mut stage = Stage::new(bytes.len());
     walk::walk(&graph, &mut stage);
     let millimetres = graph.millimetres.unwrap_or(1000.0);
