@@ -59,7 +59,7 @@ fn compare(args: &CompareArgs) -> Result<Comparison, String> {
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.
 fn table(comparison: &Comparison) -> String {
     let mut out = format!(
-        "{}: {} faces, tolerance {:.6} mm\n\n{:<18} {:<9} {:>10} {:>8} {:>9} {:>12} {:>12} {:>7} {:>6}\n",
+        "{}: {} faces, tolerance {:.6} mm\n\n{:<18} {:<9} {:>10} {:>8} {:>9} {:>12} {:>12} {:>7} {:>6} {:>8}\n",
         comparison.model,
         comparison.faces,
         comparison.tolerance,
@@ -71,13 +71,14 @@ fn table(comparison: &Comparison) -> String {
         "proven mm",
         "measured mm",
         "ratio",
-        "failed"
+        "failed",
+        "given up"
     );
     for row in &comparison.rows {
         let proven = row.proven_error.map_or_else(|| "none".into(), |e| format!("{e:.4e}"));
         let _ = writeln!(
             out,
-            "{:<18} {:<9} {:>10} {:>8} {:>9.3} {proven:>12} {:>12.4e} {:>7.2} {:>6}",
+            "{:<18} {:<9} {:>10} {:>8} {:>9.3} {proven:>12} {:>12.4e} {:>7.2} {:>6} {:>8}",
             row.strategy,
             row.bound,
             row.triangles,
@@ -85,7 +86,8 @@ fn table(comparison: &Comparison) -> String {
             row.seconds,
             row.measured_error,
             row.ratio,
-            row.failed_faces
+            row.failed_faces,
+            row.given_up_faces
         );
     }
     out

@@ -189,6 +189,7 @@ fn check_formats(args: &MeshArgs, outputs: &Outputs) -> Result<(), String> {
             return Err("the mesh of standard input needs an output: use -o".into());
         }
     }
+    args.accuracy.check()?;
     if args.quads && args.accuracy.strategy.strategy != Some(Strategy::Bezier) {
         return Err("--quads needs --strategy bezier: other strategies make triangles only".into());
     }

@@ -32,6 +32,9 @@ pub fn tell(talk: Talk, report: &Report) {
     if talk >= Talk::Normal {
         say(&format!("{input}: {}", options_line(report)));
         say(&format!("{input}: {}", result_line(report)));
+        if let Some(sentence) = report.given_up_sentence() {
+            say(&format!("{input}: {sentence}"));
+        }
         warnings(talk, report);
     }
     if talk == Talk::Verbose {

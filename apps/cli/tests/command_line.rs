@@ -21,6 +21,9 @@ fn options_without_effect_are_refused() {
     refused("mesh {} -o {} --format glb", &[&bracket, &at("a.stl")], "must agree");
     refused("mesh {} -o {} --edges", &[&bracket, &at("a.stl")], "--edges");
     refused("mesh {} -o {} --quads", &[&bracket, &at("a.stl")], "--quads");
+    let estimated = "mesh {} -o {} --strategy grid --bound estimated";
+    refused(&format!("{estimated} --max-edge 1mm"), &[&bracket, &at("a.stl")], "--max-edge");
+    refused(&format!("{estimated} --angle 5deg"), &[&bracket, &at("a.stl")], "--angle");
     refused("compare {} --strategy grid", &[&bracket], "--strategies");
     refused("info {} --full --json", &[&bracket], "--full");
     assert_eq!(files_in(folder.path()), Vec::<String>::new());

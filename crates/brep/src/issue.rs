@@ -15,7 +15,7 @@ mod values;
 pub mod words;
 
 pub use auditing::{AuditIssue, MeshDefect, PolylineDefect};
-pub use meshing::MeshIssue;
+pub use meshing::{MeshIssue, MethodFault};
 pub use reading::{ReadIssue, Word};
 pub use result::ResultIssue;
 pub use values::{Millimetres, Percent, Real, SplineFault};

@@ -17,8 +17,8 @@ pub mod winding;
 pub use assembly::{Model, Node, Placement};
 pub use ids::{BodyId, EdgeId, FaceId, NodeId, PartId, ShellId, VertexId};
 pub use issue::{
-    AuditIssue, Issue, IssueKind, MeshIssue, Millimetres, Percent, ReadIssue, Real, ResultIssue, Severity,
-    SplineFault, Word,
+    AuditIssue, Issue, IssueKind, MeshIssue, MethodFault, Millimetres, Percent, ReadIssue, Real, ResultIssue,
+    Severity, SplineFault, Word,
 };
 pub use part::{
     Body, BodyKind, Coedge, Color, Edge, Face, FaceGeometry, Loop, LooseItem, LooseKind, Part, Pcurve, Shell,

@@ -14,7 +14,7 @@ use crate::placement::PartUse;
 use crate::report::*;
 use crate::resolve::Resolved;
 use chordal_audit::FaceCrossing;
-use chordal_brep::{Issue, Model, Part, ResultIssue, Severity, Source};
+use chordal_brep::{Issue, MeshIssue, Model, Part, ResultIssue, Severity, Source};
 use chordal_sew::SewReport;
 use chordal_write::{WriteSummary, WriteWarning};
 
@@ -124,6 +124,7 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
         let issue = Issue::new(severity, part.edges[*edge as usize].source, fault.clone());
         report.problems.push(Problem::new(&issue).in_part(&part.name));
     }
+    add_given_up_edges(report, entry);
     let input_triangles: usize = part.tessellated.iter().map(|t| t.triangles.len()).sum();
     let input_points: usize = part.tessellated.iter().map(|t| t.points.len()).sum();
     report.triangles += instances * (meshed.mesh.triangle_count() + input_triangles);
@@ -153,6 +154,18 @@ fn add_part(report: &mut Report, entry: &Entry<'_>, tolerance: f64) {
         triangles: item.triangles.len(),
         instances,
     }));
+}
+
+/// Edges that the requested edge method gave up.
+fn add_given_up_edges(report: &mut Report, entry: &Entry<'_>) {
+    let edges = entry.meshed.report.edges_given_up;
+    if edges > 0 {
+        report.edges_given_up += entry.part_use.instances * edges;
+        let (method, of) = (report.options.edge_method.clone(), entry.part.edges.len());
+        let kind = MeshIssue::EdgeMethodGaveUp { method, edges, of };
+        let issue = Issue::new(Severity::Warning, entry.part.source, kind);
+        report.problems.push(Problem::new(&issue).in_part(&entry.part.name));
+    }
 }
 
 /// Curves and points that belong to no face.

@@ -65,6 +65,8 @@ pub struct Report {
     pub area: f64,
     /// The fewest triangles that the tolerance allows (docs/report.md), as placed.
     pub lower_bound: f64,
+    /// Edges that the requested edge method gave up, so that the default cut them into chords; as placed.
+    pub edges_given_up: usize,
     /// How often faces requested finer edges, the most of any part.
     pub edge_rounds: usize,
     /// Every part of the file.
@@ -163,6 +165,8 @@ pub struct FaceTotals {
     pub failed: usize,
     /// Faces without an area at the accuracy of the file: they need no triangles.
     pub zero_area: usize,
+    /// Faces that the requested strategy gave up, so that the default made them.
+    pub given_up: usize,
     /// Faces of the file, each counted once.
     pub distinct: usize,
 }
@@ -326,6 +330,11 @@ pub struct FaceEntry {
     pub instances: usize,
     /// What became of it.
     pub status: FaceStatus,
+    /// The requested strategy, `options.strategy`.
+    pub strategy_requested: String,
+    /// The strategy that made its triangles: the requested one, or `default` where that gave up; `null` where it has
+    /// none.
+    pub strategy: Option<String>,
     /// How many triangles it has.
     pub triangles: usize,
     /// In the placement with the largest scale; `null` where nothing is proven.

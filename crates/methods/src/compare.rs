@@ -78,6 +78,9 @@ pub struct ComparedRow {
     pub ratio: f64,
     /// Faces that failed, as placed.
     pub failed_faces: usize,
+    /// Faces that the strategy gave up, so that the default made them, as placed: the other figures of the row are
+    /// theirs, too.
+    pub given_up_faces: usize,
     /// Rounds in which faces asked for finer edges, the most of any part.
     pub rounds: usize,
     /// Which parts of the mesher ran.
@@ -145,6 +148,7 @@ impl ComparedRow {
             self.phases.traversal += face.phases.traversal;
             self.phases.triangulation += face.phases.triangulation;
             self.failed_faces += instances * usize::from(face.failed.is_some());
+            self.given_up_faces += instances * usize::from(face.given_up.is_some());
             let proven = Some(face.proven_error * scale).filter(|e| e.is_finite());
             if face.triangles > 0 {
                 self.proven_error = self.proven_error.zip(proven).map(|(a, b)| f64::max(a, b));

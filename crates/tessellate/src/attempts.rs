@@ -4,7 +4,7 @@ use crate::effort::{Effort, Remedy, Setback};
 use crate::face_context::FaceContext;
 use crate::face_mesh::{FaceMesh, boundary_triangles, shape, sweep_axis};
 use crate::face_result::{FaceResult, Proof};
-use crate::fill_loop::fill_and_prove;
+use crate::fill_loop::{fill_and_prove, given_up};
 use crate::limits::Limits;
 use crate::options::{Cancel, Options};
 use crate::prove::Prover;
@@ -90,6 +90,7 @@ fn attempt(
     let crossed = are_loops_crossing || loops_cross(face.chart());
     let mut result = face.finish(proof, options.bound, options.quads);
     result.crossed = crossed;
+    result.given_up = given_up(&result.trace, options);
     Ok(Box::new(result))
 }
 

@@ -30,6 +30,8 @@ pub(crate) struct SampledEdge {
     pub fewest: f64,
     /// Which parts of an edge method ran.
     pub trace: Trace,
+    /// The requested edge method gave the edge up, and the default made chords of it.
+    pub method_gave_up: bool,
 }
 
 /// The chords of an edge while they are made.
@@ -39,6 +41,8 @@ struct Chords {
     t: Vec<f64>,
     fewest: f64,
     trace: Trace,
+    /// The edge method gave a piece up.
+    method_gave_up: bool,
     /// The edge needs more chords, or more time, than one edge may take.
     given_up: bool,
 }
@@ -152,7 +156,10 @@ impl SampledEdge {
             let piece = EdgePiece { curve, whole: edge.range, range, tolerance: sampling.limits.tolerance };
             match splitter.and_then(|s| s.parameters(&piece, uses, &mut chords.trace)) {
                 Some(t) => chords.add_given(t, &sampling, range),
-                None => chords.add_smooth(&sampling, range),
+                None => {
+                    chords.method_gave_up |= splitter.is_some();
+                    chords.add_smooth(&sampling, range);
+                }
             }
             if chords.given_up || sampling.is_spent(chords.t.len()) {
                 return Err(MeshIssue::EdgeGivenUp);
@@ -162,8 +169,8 @@ impl SampledEdge {
         while chords.t.len() < least + 1 {
             chords.t = halved(&chords.t);
         }
-        let Chords { t, fewest, trace, .. } = chords;
-        Ok(Self { samples: measured(t, curve, ends), fewest, trace })
+        let Chords { t, fewest, trace, method_gave_up, .. } = chords;
+        Ok(Self { samples: measured(t, curve, ends), fewest, trace, method_gave_up })
     }
 }
 

@@ -46,6 +46,8 @@ pub(crate) struct FaceResult {
     pub phases: Phases,
     /// The cells of a subdivision, where they are asked for.
     pub cells: Vec<UvBox>,
+    /// The requested method gave the face up ([`MeshIssue::MethodGaveUp`]).
+    pub given_up: Option<MeshIssue>,
     /// A fault of this program in a method, after which the default mesher took over.
     pub mended: Option<MeshIssue>,
 }

@@ -4,11 +4,11 @@
 //! method may have asked for chords that the default can do without. A pass counts only if it leaves fewer
 //! faces unproven.
 
-use crate::face_result::Meshed;
+use crate::face_result::{Meshed, is_unproven};
 use crate::part_job::PartJob;
 use crate::rounds::{Pass, PassResult};
 use crate::shared_inner_edges::{separate, unproven_faces};
-use chordal_brep::MeshIssue;
+use chordal_brep::{MeshIssue, MethodFault};
 
 /// Passes in which the default takes over: first the unproven faces, then with their neighbours, which may be
 /// the ones that ask for finer edges. Further passes would only add the neighbours' neighbours.
@@ -41,12 +41,25 @@ pub(crate) fn leave_to_default(job: &PartJob<'_>, mut result: PassResult) -> Pas
             if let Ok(meshed) = meshed {
                 meshed.trace.add("faces left to the default methods", 1);
                 meshed.mended = internal_error(&result.faces[face]);
+                meshed.given_up = given_up(job, &result.faces[face]);
             }
         }
         again.edge_faults.splice(..0, result.edge_faults);
         (result, unproven) = (again, still_unproven);
     }
     result
+}
+
+/// That the method of the options gave up a face, and why; `before` is what the pass before made of it.
+fn given_up(job: &PartJob<'_>, before: &Meshed) -> Option<MeshIssue> {
+    let method = job.options.fill_method.as_ref()?;
+    let cause = match before {
+        Ok(face) if face.given_up.is_some() => return face.given_up.clone(),
+        Ok(face) if is_unproven(face, &job.limits, job.options.bound) => MethodFault::Unproven,
+        Ok(_) => MethodFault::Neighbour,
+        Err(issue) => MethodFault::Issue(Box::new(issue.clone())),
+    };
+    Some(MeshIssue::MethodGaveUp { method: method.name().into(), cause })
 }
 
 /// The fault of this program that a face met before, in this pass or an earlier one.

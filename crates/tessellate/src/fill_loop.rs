@@ -21,7 +21,7 @@ use crate::options::Options;
 use crate::poles::open_out;
 use crate::prove::{ChordRequests, Fault, Prover, STEPS_PER_LOOK};
 use crate::trace::Trace;
-use chordal_brep::MeshIssue;
+use chordal_brep::{MeshIssue, MethodFault};
 use chordal_nurbs::DVec2;
 
 /// A method may refine what the proof found too coarse this often. Each round builds the whole face again.
@@ -29,6 +29,15 @@ const METHOD_ROUNDS: usize = 24;
 
 /// Most cells of one face. More would take gigabytes.
 const MOST_CELLS: usize = 4_000_000;
+
+/// The name in the trace of a face that a method could not prove.
+const LEFT_TO_DEFAULT: &str = "faces left to the default strategy";
+
+/// Whether the method of the options gave the face up: none of its points are in the mesh.
+pub(crate) fn given_up(trace: &Trace, options: &Options) -> Option<MeshIssue> {
+    let method = options.fill_method.as_ref().filter(|_| trace.count(LEFT_TO_DEFAULT) > 0)?;
+    Some(MeshIssue::MethodGaveUp { method: method.name().into(), cause: MethodFault::Unproven })
+}
 
 /// Proving inserts points and flips edges, after which triangles at poles may be flat again; they are opened
 /// this often.
@@ -143,7 +152,7 @@ fn refine_by_method(
     face.restore(&boundary);
     face.set_metrics(metrics);
     face.clear_quads();
-    face.count("faces left to the default strategy", 1);
+    face.count(LEFT_TO_DEFAULT, 1);
     fill_by_rows(face);
     refine_opened(face, prover)
 }

@@ -103,9 +103,10 @@ fn mesh_once(
     let uncrossed = uncrossed_part(&job, &result.edges, &crossed);
     // 4. Join the faces.
     let clock = Stopwatch::of_wall();
-    let PassResult { edges, fewest, edge_faults, faces, rounds } = result;
+    let PassResult { edges, fewest, edges_given_up, edge_faults, faces, rounds } = result;
     report.rounds = rounds;
     report.edge_faults = edge_faults;
+    report.edges_given_up = edges_given_up;
     report.faces = face_reports(&job, &edges, &fewest, &faces);
     let mut faces: Vec<Option<Box<FaceResult>>> = faces.into_iter().map(Result::ok).collect();
     settle_orientation(&mut faces);
@@ -183,6 +184,7 @@ fn face_reports(
                 phases: result.phases,
                 trace: result.trace.clone(),
                 cells: result.cells.clone(),
+                given_up: result.given_up.clone(),
                 mended: result.mended.clone(),
                 zero_area: result.triangles.is_empty(),
                 lower_bound: lower_bound(

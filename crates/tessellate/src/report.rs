@@ -30,6 +30,8 @@ pub struct FaceReport {
     pub phases: Phases,
     /// The cells of the subdivision in the chart, where the options ask for them.
     pub cells: Vec<UvBox>,
+    /// The requested method gave the face up, and the default method made it ([`MeshIssue::MethodGaveUp`]).
+    pub given_up: Option<MeshIssue>,
     /// A fault of this program in a method, after which the default mesher took over.
     pub mended: Option<MeshIssue>,
     /// Why the face has no triangles.
@@ -70,6 +72,8 @@ pub struct PartReport {
     pub faces: Vec<FaceReport>,
     /// Which parts of an edge method ran; empty for the default mesher.
     pub edge_trace: Trace,
+    /// Edges that the requested edge method gave up, so that the default method cut them into chords.
+    pub edges_given_up: usize,
     /// Edges that a fault of this program left without samples, by their index in the part.
     pub edge_faults: Vec<(u32, MeshIssue)>,
     /// Rounds in which faces asked for finer edges.

@@ -52,6 +52,8 @@ pub(crate) struct PassResult {
     pub edges: Vec<EdgeSamples>,
     /// Of every edge, the fewest chords that the tolerance allows.
     pub fewest: Vec<f64>,
+    /// Edges that the requested edge method gave up.
+    pub edges_given_up: usize,
     pub edge_faults: Vec<EdgeFault>,
     pub faces: Vec<Meshed>,
     /// Rounds in which faces asked for finer edges.
@@ -111,11 +113,16 @@ impl<'j, 'a> Pass<'j, 'a> {
             return Ok(SampledEdge::default());
         }
         let splitter = self.options_of_edge(edge).edge_splitter.as_deref();
-        caught(|| {
+        let mut sampled = caught(|| {
             let uses = job.edge_uses(edge);
             let deadline = job.options.face_timeout.and_then(Deadline::after);
             SampledEdge::new(job.part, &job.part.edges[edge], &uses, &job.limits, splitter, least, deadline)
-        })?
+        })??;
+        // In a pass by the default, for some of its faces.
+        let is_left_to_default = splitter.is_none() && job.options.edge_splitter.is_some();
+        let has_curve = job.part.edges[edge].curve.is_some();
+        sampled.method_gave_up |= is_left_to_default && has_curve;
+        Ok(sampled)
     }
 
     /// Single chords between the same two vertices as another single chord, where the curve is not straight:
@@ -230,6 +237,7 @@ impl<'j, 'a> Pass<'j, 'a> {
     /// The same with edges that are sampled already.
     pub fn run_with(&self, sampled: SampledEdges, done: &(dyn Fn(usize) + Sync)) -> PassResult {
         let SampledEdges { edges, faults: edge_faults } = sampled;
+        let edges_given_up = edges.iter().filter(|edge| edge.method_gave_up).count();
         let (mut edges, fewest): (Vec<EdgeSamples>, Vec<f64>) =
             edges.into_iter().map(|edge| (edge.samples, edge.fewest)).unzip();
         let n = self.job.part.faces.len();
@@ -260,7 +268,7 @@ impl<'j, 'a> Pass<'j, 'a> {
             rounds = round + 1;
             dirty = self.refine_edges(&mut edges, requests, round);
         }
-        PassResult { edges, fewest, edge_faults, faces, rounds }
+        PassResult { edges, fewest, edges_given_up, edge_faults, faces, rounds }
     }
 
     /// Cuts the chords that faces asked for; returns the faces at their edges.

@@ -1,7 +1,7 @@
 //! What fails costs one face or edge and is reported with its kind; a panic keeps its text.
 
 use chordal_brep::{
-    Coedge, Edge, EdgeId, Face, FaceGeometry, Loop, MeshIssue, Part, Source, Vertex, VertexId,
+    Coedge, Edge, EdgeId, Face, FaceGeometry, Loop, MeshIssue, MethodFault, Part, Source, Vertex, VertexId,
 };
 use chordal_nurbs::{Curve, DVec3, Frame, Range, Surface};
 use chordal_tessellate::method::{
@@ -120,6 +120,55 @@ fn a_panic_on_a_face_keeps_its_text_and_place() {
         assert!(mended.to_string().contains("please report it"), "{mended}");
         assert_eq!((face.triangles, &face.failed), (2, &None));
     }
+}
+
+/// Cannot fill any face.
+#[derive(Debug)]
+struct GivesUp;
+
+impl FillMethod for GivesUp {
+    fn name(&self) -> &str {
+        "gives up"
+    }
+
+    fn begin(&self, _: &FaceMesh<'_, '_>, _: FillTask) -> Result<Box<dyn FaceFiller>, MeshIssue> {
+        Err(MeshIssue::TooManyCells { most: 1 })
+    }
+}
+
+#[test]
+fn a_method_that_gives_up_does_not_pass_for_the_default() {
+    let report = mesh(&two_squares(), &Options::new(0.01).with_fill_method(Some(Arc::new(GivesUp))));
+    let cause = MethodFault::Issue(Box::new(MeshIssue::TooManyCells { most: 1 }));
+    let given_up = Some(MeshIssue::MethodGaveUp { method: "gives up".into(), cause });
+    for face in &report.faces {
+        assert_eq!((face.triangles, &face.failed, &face.given_up), (2, &None, &given_up));
+    }
+    assert_eq!(report.edges_given_up, 0);
+    let report = mesh(&two_squares(), &Options::new(0.01));
+    assert!(report.faces.iter().all(|face| face.given_up.is_none()));
+}
+
+/// Cuts no edge but the one between the squares.
+#[derive(Debug)]
+struct CutsOne;
+
+impl EdgeSplitter for CutsOne {
+    fn name(&self) -> &str {
+        "cuts one"
+    }
+
+    fn parameters(&self, piece: &EdgePiece<'_>, _: &[EdgeUse<'_, '_>], _: &mut Trace) -> Option<Vec<f64>> {
+        let is_between = piece.curve.point(0.0).x == 1.0 && piece.curve.point(1.0).x == 1.0;
+        is_between.then(|| vec![0.0, 1.0])
+    }
+}
+
+#[test]
+fn edges_that_a_method_gives_up_are_counted() {
+    let report = mesh(&two_squares(), &Options::new(0.01).with_edge_splitter(Some(Arc::new(CutsOne))));
+    assert_eq!(report.edges_given_up, 6);
+    assert_eq!(mesh(&two_squares(), &Options::new(0.01)).edges_given_up, 0);
 }
 
 #[test]

@@ -21,12 +21,12 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "LENGTH|%", allow_hyphen_values = true)]
     pub boundary_tolerance: Option<Tolerance>,
     /// Largest angle between the exact normals at the two ends of a mesh edge on one face: 20deg, 0.35rad, a bare
-    /// number in degrees, or `off`.
+    /// number in degrees, or `off` [default: 20deg].
     #[arg(
-        long, visible_alias = "angular-deflection", value_name = "ANGLE", default_value = "20deg",
-        value_parser = parse_angle, allow_hyphen_values = true
+        long, visible_alias = "angular-deflection", value_name = "ANGLE", value_parser = parse_angle,
+        allow_hyphen_values = true
     )]
-    pub angle: AngleArg,
+    pub angle: Option<AngleArg>,
     /// Longest mesh edge: a length with its unit (a bare number is in mm) [default: no limit].
     #[arg(long, value_name = "LENGTH", value_parser = chordal::parse_length, allow_hyphen_values = true)]
     pub max_edge: Option<f64>,
@@ -66,16 +66,35 @@ const DEFAULT_TIMEOUT: Duration = Duration::from_secs(3);
 const METHOD_TIMEOUT: Duration = Duration::from_secs(60);
 
 impl AccuracyArgs {
+    /// An option that has no effect is refused.
+    ///
+    /// # Errors
+    /// One sentence where a strategy ignores limits that were given.
+    pub fn check(&self) -> Result<(), String> {
+        let is_estimated = matches!(self.bound, BoundArg::Estimated) && self.strategy.strategy.is_some();
+        let given =
+            [("--angle", self.angle.is_some_and(|a| a.0.is_some())), ("--max-edge", self.max_edge.is_some())];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) if is_estimated => Err(format!(
+                "{option} has no effect on the faces of --strategy {} with --bound estimated; use --bound proven",
+                self.strategy.name
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// As options of the library.
     pub fn options(&self) -> MeshOptions {
         let bound = match self.bound {
             BoundArg::Proven => Bound::Proven,
             BoundArg::Estimated => Bound::Estimated,
         };
-        MeshOptions::default()
+        let options = MeshOptions::default();
+        let default_angle = options.mesher().angle;
+        options
             .with_tolerance(self.tolerance)
             .with_boundary_tolerance(self.boundary_tolerance)
-            .with_angle(self.angle.0)
+            .with_angle(self.angle.map_or(default_angle, |given| given.0))
             .with_max_edge(self.max_edge)
             .with_fill_method(self.strategy.fill_method())
             .with_edge_splitter(self.edge_method.edge_splitter())

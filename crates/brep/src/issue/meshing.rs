@@ -79,18 +79,27 @@ pub enum MeshIssue {
         #[serde(serialize_with = "as_sentence")]
         error: NurbsError,
     },
-    /// A method of another crate cannot mesh the face.
-    MethodFailed {
-        /// The method.
+    /// The requested method gave the face up, and the default method made it.
+    MethodGaveUp {
+        /// The requested method.
         method: String,
-        /// Its reason.
-        reason: String,
+        /// Why.
+        cause: MethodFault,
     },
     /// The loops of a face cross or touch; the model was given a vertex at each such place, and the face loops without
     /// crossings.
     LoopsUntangled {
         /// Places where they crossed or touched.
         crossings: usize,
+    },
+    /// The requested edge method gave edges of the part up, and the default method cut them into chords.
+    EdgeMethodGaveUp {
+        /// The requested method.
+        method: String,
+        /// How many edges.
+        edges: usize,
+        /// How many edges the part has.
+        of: usize,
     },
     /// A fault of this program: a panic.
     InternalError {
@@ -99,6 +108,28 @@ pub enum MeshIssue {
         /// The place in the source code, where it is known.
         location: Option<String>,
     },
+}
+
+/// Why a method gave a face up.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub enum MethodFault {
+    /// It could not mesh the face.
+    Issue(Box<MeshIssue>),
+    /// The error of its triangles is not proven to be within the tolerance.
+    Unproven,
+    /// A face beside it was given up, and needed other edges between the two.
+    Neighbour,
+}
+
+impl fmt::Display for MethodFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MethodFault::Issue(issue) => issue.fmt(f),
+            MethodFault::Unproven => f.write_str("its triangles are not proven to be within the tolerance"),
+            MethodFault::Neighbour => f.write_str("a face beside it was given up"),
+        }
+    }
 }
 
 impl MeshIssue {
@@ -124,8 +155,9 @@ impl MeshIssue {
             MeshIssue::SeamTooCoarse => "seam-too-coarse",
             MeshIssue::EdgesTooCoarse { .. } => "edges-too-coarse",
             MeshIssue::NoNurbsForm { .. } => "no-nurbs-form",
-            MeshIssue::MethodFailed { .. } => "method-failed",
+            MeshIssue::MethodGaveUp { .. } => "method-gave-up",
             MeshIssue::LoopsUntangled { .. } => "loops-untangled",
+            MeshIssue::EdgeMethodGaveUp { .. } => "edge-method-gave-up",
             MeshIssue::InternalError { .. } => "internal-error",
         }
     }
@@ -182,10 +214,19 @@ impl fmt::Display for MeshIssue {
                 write!(f, "edges are still too coarse after {}", count(*rounds, "round", "rounds"))
             }
             MeshIssue::NoNurbsForm { error } => write!(f, "the surface has no NURBS form: {error}"),
-            MeshIssue::MethodFailed { method, reason } => write!(f, "method `{method}` failed: {reason}"),
+            MeshIssue::MethodGaveUp { method, cause } => {
+                write!(f, "method `{method}` gave up ({cause}); the default method made the face")
+            }
             MeshIssue::LoopsUntangled { crossings } => {
                 let places = count(*crossings, "place", "places");
                 write!(f, "loops cross or touch at {places}; each was given a vertex")
+            }
+            MeshIssue::EdgeMethodGaveUp { method, edges, of } => {
+                let of = count(*of, "edge", "edges");
+                write!(
+                    f,
+                    "edge method `{method}` gave up {edges} of {of}; the default method made their chords"
+                )
             }
             MeshIssue::InternalError { message, location } => {
                 write!(f, "internal error: {message}")?;

@@ -49,9 +49,11 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
     if of_face.untangled > 0 {
         problem(Severity::Warning, MeshIssue::LoopsUntangled { crossings: of_face.untangled }.into());
     }
-    if let Some(fault) = &of_face.mended {
-        problem(Severity::Warning, fault.clone().into());
+    // A fault of this program says more than that the method gave up for it.
+    if let Some(issue) = of_face.mended.as_ref().or(of_face.given_up.as_ref()) {
+        problem(Severity::Warning, issue.clone().into());
     }
+    report.faces.given_up += instances * usize::from(of_face.given_up.is_some());
     if status == FaceStatus::Meshed {
         match proven_error.map(|error| error + rounding) {
             Some(error) => {
@@ -83,12 +85,20 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
         part: entry.part.name.clone(),
         instances,
         status,
+        strategy_requested: report.options.strategy.clone(),
+        strategy: strategy(report, of_face),
         triangles: of_face.triangles,
         proven_error,
         gap: known(gap),
         bound: of_face.bound.into(),
         lower_bound: of_face.lower_bound,
     });
+}
+
+/// The strategy that made the triangles of a face.
+fn strategy(report: &Report, of_face: &FaceReport) -> Option<String> {
+    let by = if of_face.given_up.is_some() { "default" } else { &report.options.strategy };
+    (of_face.triangles > 0).then(|| by.to_owned())
 }
 
 /// What became of a face, and why it has no triangles.

@@ -93,6 +93,23 @@ impl Report {
         format!("{proven} of {total} proven within {within}; {unproven} unproven: {}{more}", names.join(", "))
     }
 
+    /// What the requested methods gave up, so that the default made it: `strategy quadtree gave up 3 of 28 faces`;
+    /// `None` where they gave up nothing.
+    pub fn given_up_sentence(&self) -> Option<String> {
+        let options = &self.options;
+        let mut given_up = Vec::new();
+        if self.faces.given_up > 0 {
+            let total = count(self.faces.total, "face", "faces");
+            given_up
+                .push(format!("strategy {} gave up {} of {total}", options.strategy, self.faces.given_up));
+        }
+        if self.edges_given_up > 0 {
+            let edges = count(self.edges_given_up, "edge", "edges");
+            given_up.push(format!("edge method {} gave up {edges}", options.edge_method));
+        }
+        (!given_up.is_empty()).then(|| format!("{}: made by the default", given_up.join(" and ")))
+    }
+
     /// Whether the surface is closed: `watertight`, `open by design (28 open edges)`, `leaking (1 of 2 closed shells)`.
     pub fn closedness_sentence(&self) -> String {
         let shells = &self.shells;

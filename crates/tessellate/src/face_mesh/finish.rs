@@ -73,6 +73,7 @@ impl FaceMesh<'_, '_> {
         let proven_error = if proven { proof.error.max(boundary_error) } else { f64::NAN };
         let sign = if reversed { -1.0 } else { 1.0 };
         FaceResult {
+            given_up: None,
             normals: self.vertices.normals.iter().map(|n| *n * sign).collect(),
             uv: self.mesh.points,
             keys,
