@@ -43,7 +43,7 @@ pub(super) fn read(context: &mut Context<'_>, node: &Node, state: &State, name: 
 }
 
 fn solid(context: &mut Context<'_>, node: &Node, state: &State, name: &str) {
-    let look = state.look(node, name);
+    let look = state.shared.look(node, name);
     let named = |field, default: f64| node.number(field, default);
     let parts = node.words("parts");
     let has = |part: &str| parts.is_empty() || parts.iter().any(|&p| p == part || p == "ALL");
@@ -103,7 +103,7 @@ fn polygons_of(context: &mut Context<'_>, node: &Node, state: &State, name: &str
         let message = ReadIssue::InNode { node: node.kind.clone(), cause };
         context.stage.notes.lose(node.source(), message);
     }
-    let mut look = state.look(node, name);
+    let mut look = state.shared.look(node, name);
     look.flipped = state.shared.clockwise;
     context.stage.triangles(points, triangles, &state.transform, &look);
 }

@@ -3,14 +3,9 @@
 use crate::scene::graph::{Node, NodeIx};
 use crate::trimmed::Look;
 use chordal_brep::Color;
-use chordal_nurbs::DAffine3;
 
 /// The traversal state; a Separator gives its children a copy.
-#[derive(Clone, Debug)]
-pub(super) struct State {
-    pub transform: DAffine3,
-    pub shared: Shared,
-}
+pub(super) type State = crate::scene::walk::State<Shared>;
 
 /// What shapes are made of besides their place: two uses of a node under equal ones are the same part.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,21 +22,22 @@ pub(super) struct Shared {
     pub metres: f64,
 }
 
-impl State {
-    pub(super) fn new() -> Self {
-        let shared = Shared {
+impl Default for Shared {
+    fn default() -> Self {
+        Self {
             coordinates: None,
             profile_coordinates: None,
             profiles: Vec::new(),
             color: None,
             clockwise: false,
             metres: 1.0,
-        };
-        Self { transform: DAffine3::IDENTITY, shared }
+        }
     }
+}
 
+impl Shared {
     /// What the faces of a shape have besides their shape.
     pub(super) fn look(&self, node: &Node, name: &str) -> Look {
-        Look { name: name.to_owned(), color: self.shared.color, source: node.source(), ..Look::default() }
+        Look { name: name.to_owned(), color: self.color, source: node.source(), ..Look::default() }
     }
 }

@@ -15,7 +15,7 @@ pub(super) fn read(context: &mut Context<'_>, ix: NodeIx, state: &State, name: &
     if !matches!(node.kind.as_str(), "NurbsSurface" | "IndexedNurbsSurface") {
         return false;
     }
-    let look = state.look(node, name);
+    let look = state.shared.look(node, name);
     let counts = [node.count("numUControlPoints", 0), node.count("numVControlPoints", 0)];
     let needed = counts[0].saturating_mul(counts[1]);
     if !context.stage.afford(needed.min(node_size(graph, state)), node.source()) {

@@ -2,92 +2,40 @@
 
 use super::state::{Shared, State};
 use super::{shapes, surfaces};
-use crate::scene::context::Context;
 use crate::scene::graph::{Graph, Node, NodeIx};
 use crate::scene::matrix;
-use crate::scene::stage::{self, Placed, Stage};
+use crate::scene::stage::{self, Stage};
+use crate::scene::walk::Language;
 use chordal_brep::{LooseKind, ReadIssue};
 use chordal_nurbs::{DAffine3, DVec3, math};
-use rustc_hash::FxHashMap;
-
-/// Uses within uses deeper than this refer in a circle.
-const MAX_DEPTH: u32 = 600;
 
 /// Fills the stage with the shapes of a graph.
 pub(super) fn walk(graph: &Graph, stage: &mut Stage) {
-    let mut walk = Walk {
-        context: Context::new(graph, stage),
-        uses: stage::uses(graph),
-        parts: FxHashMap::default(),
-        active: vec![false; graph.nodes.len()],
-        depth: 0,
-    };
-    let mut state = State::new();
-    for &root in &graph.roots {
-        walk.node(root, &mut state, "");
-    }
+    Walk::run(graph, stage, Shared::default());
 }
 
-struct Walk<'a> {
-    context: Context<'a>,
-    uses: Vec<u32>,
-    /// What nodes used more than once consist of, by the state they were used in.
-    parts: FxHashMap<NodeIx, Vec<(Shared, Vec<Placed>)>>,
-    /// Nodes being visited: one that is used inside itself would never end.
-    active: Vec<bool>,
-    depth: u32,
-}
+/// Open Inventor and VRML 1: nodes change the state for the nodes after them.
+pub(super) struct Inventor;
 
-impl Walk<'_> {
-    /// Visits a node; `name` is that of the nearest named node above.
-    fn node(&mut self, ix: NodeIx, state: &mut State, name: &str) {
-        let graph = self.context.graph;
-        let node = graph.node(ix);
-        if self.depth >= MAX_DEPTH || !self.context.stage.afford(0, node.source()) {
-            return;
-        }
-        if std::mem::replace(&mut self.active[ix as usize], true) {
-            return self
-                .context
-                .stage
-                .notes
-                .lose(node.source(), ReadIssue::UsedInItself { node: node.kind.clone() });
-        }
-        self.depth += 1;
-        let name = if node.name.is_empty() { name } else { readable(&node.name) };
-        if self.uses[ix as usize] > 1 && (is_separator(&node.kind) || is_shape(&node.kind)) {
-            self.used_often(ix, state, name);
-        } else {
-            self.visit(ix, state, name);
-        }
-        self.depth -= 1;
-        self.active[ix as usize] = false;
+type Walk<'a> = crate::scene::walk::Walk<'a, Inventor>;
+
+impl Language for Inventor {
+    type Shared = Shared;
+
+    fn may_be_part(kind: &str) -> bool {
+        is_separator(kind) || is_shape(kind)
     }
 
-    /// A node that is used more than once and changes nothing for its neighbours becomes a part.
-    fn used_often(&mut self, ix: NodeIx, state: &State, name: &str) {
-        let source = self.context.graph.node(ix).source();
-        let known =
-            self.parts.get(&ix).and_then(|all| all.iter().find(|(shared, _)| *shared == state.shared));
-        let placed = match known {
-            Some((_, placed)) => placed.clone(),
-            None => {
-                self.context.stage.open_part(name, source);
-                let mut inner = State { transform: DAffine3::IDENTITY, shared: state.shared.clone() };
-                self.visit(ix, &mut inner, name);
-                let placed = self.context.stage.close_part();
-                self.parts.entry(ix).or_default().push((state.shared.clone(), placed.clone()));
-                placed
-            }
-        };
-        self.context.stage.place(&placed, &state.transform, source);
+    /// The part before what writers append to tell instances apart.
+    fn readable(name: &str) -> &str {
+        name.split('+').next().unwrap_or_default()
     }
 
-    fn visit(&mut self, ix: NodeIx, state: &mut State, name: &str) {
-        let graph = self.context.graph;
+    fn visit(walk: &mut Walk<'_>, ix: NodeIx, state: &mut State, name: &str) {
+        let graph = walk.context.graph;
         let node = graph.node(ix);
-        if shapes::read(&mut self.context, node, state, name)
-            || surfaces::read(&mut self.context, ix, state, name)
+        if shapes::read(&mut walk.context, node, state, name)
+            || surfaces::read(&mut walk.context, ix, state, name)
         {
             return;
         }
@@ -114,84 +62,80 @@ impl Walk<'_> {
                 state.shared.metres = metres;
             }
             "ResetTransform" => state.transform = DAffine3::IDENTITY,
-            "Switch" => self.switch(node, state, name),
+            "Switch" => switch(walk, node, state, name),
             "LOD" | "LevelOfDetail" => {
                 if node.children.len() > 1 {
-                    self.context.note(node, ReadIssue::FirstLevelOnly);
+                    walk.context.note(node, ReadIssue::FirstLevelOnly);
                 }
                 let mut inner = state.clone();
-                node.children.first().inspect(|&&child| self.node(child, &mut inner, name));
+                node.children.first().inspect(|&&child| walk.node(child, &mut inner, name));
             }
-            "Array" | "MultipleCopy" => self.copies(node, state, name),
+            "Array" | "MultipleCopy" => copies(walk, node, state, name),
             "TransformSeparator" => {
                 let before = state.transform;
-                self.children(node, state, name);
+                children(walk, node, state, name);
                 state.transform = before;
             }
             "WWWInline" | "File" => {
                 let name = node.word("name").to_owned();
-                self.context.stage.notes.lose(node.source(), ReadIssue::OtherFile { name });
+                walk.context.stage.notes.lose(node.source(), ReadIssue::OtherFile { name });
             }
             kind if is_separator(kind) => {
                 let mut inner = state.clone();
-                self.children(node, &mut inner, name);
+                children(walk, node, &mut inner, name);
             }
-            kind if is_loose_curve(kind) => self.context.stage.loose(LooseKind::Wire, name, node.source()),
+            kind if is_loose_curve(kind) => walk.context.stage.loose(LooseKind::Wire, name, node.source()),
             "PointSet" | "IndexedPointSet" | "MarkerSet" | "IndexedMarkerSet" => {
-                self.context.stage.loose(LooseKind::Point, name, node.source());
+                walk.context.stage.loose(LooseKind::Point, name, node.source());
             }
             "Text2" | "Text3" | "AsciiText" => {
-                self.context.note(node, ReadIssue::Unsupported { what: "text".into() })
+                walk.context.note(node, ReadIssue::Unsupported { what: "text".into() })
             }
-            _ => self.children(node, state, name),
-        }
-    }
-
-    /// Visits the unnamed children in order.
-    fn children(&mut self, node: &Node, state: &mut State, name: &str) {
-        for &child in &node.children {
-            self.node(child, state, name);
-        }
-    }
-
-    fn switch(&mut self, node: &Node, state: &mut State, name: &str) {
-        match node.number("whichChild", -1.0) {
-            which if which >= 0.0 => {
-                if let Some(&child) = node.children.get(which as usize) {
-                    self.node(child, state, name);
-                }
-            }
-            -3.0 => self.children(node, state, name),
-            _ if node.children.is_empty() => {}
-            _ => self.context.note(node, ReadIssue::NoChoice),
-        }
-    }
-
-    /// Children drawn several times: at the points of a grid, or by a list of matrices.
-    fn copies(&mut self, node: &Node, state: &State, name: &str) {
-        let places = if node.kind == "MultipleCopy" {
-            node.numbers("matrix").chunks_exact(16).map(matrix::of_rows).collect()
-        } else {
-            match grid(node) {
-                Some(places) => places,
-                None => {
-                    return self.context.stage.notes.lose(
-                        node.source(),
-                        ReadIssue::TooMany { what: "copies in an array", limit: 100_000 },
-                    );
-                }
-            }
-        };
-        for place in places {
-            let mut inner = State { transform: state.transform * place, shared: state.shared.clone() };
-            self.children(node, &mut inner, name);
+            _ => children(walk, node, state, name),
         }
     }
 }
 
-/// The part of a name before what writers append to tell instances apart.
-fn readable(name: &str) -> &str {
-    name.split('+').next().unwrap_or_default()
+/// Visits the unnamed children in order.
+fn children(walk: &mut Walk<'_>, node: &Node, state: &mut State, name: &str) {
+    for &child in &node.children {
+        walk.node(child, state, name);
+    }
+}
+
+fn switch(walk: &mut Walk<'_>, node: &Node, state: &mut State, name: &str) {
+    match node.number("whichChild", -1.0) {
+        which if which >= 0.0 => {
+            if let Some(&child) = node.children.get(which as usize) {
+                walk.node(child, state, name);
+            }
+        }
+        -3.0 => children(walk, node, state, name),
+        _ if node.children.is_empty() => {}
+        _ => walk.context.note(node, ReadIssue::NoChoice),
+    }
+}
+
+/// Children drawn several times: at the points of a grid, or by a list of matrices.
+fn copies(walk: &mut Walk<'_>, node: &Node, state: &State, name: &str) {
+    let places = if node.kind == "MultipleCopy" {
+        node.numbers("matrix").chunks_exact(16).map(matrix::of_rows).collect()
+    } else {
+        match grid(node) {
+            Some(places) => places,
+            None => {
+                return walk
+                    .context
+                    .stage
+                    .notes
+                    .lose(node.source(), ReadIssue::TooMany { what: "copies in an array", limit: 100_000 });
+            }
+        }
+    };
+    for place in places {
+        let mut inner = State { transform: state.transform * place, shared: state.shared.clone() };
+        children(walk, node, &mut inner, name);
+    }
 }
 
 /// The most copies that an array makes.

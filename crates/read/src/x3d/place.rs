@@ -1,6 +1,7 @@
 //! Where a node is placed, and what the nodes above it give to its faces.
 
 use crate::scene::graph::Node;
+use crate::scene::walk::State;
 use crate::trimmed::Look;
 use chordal_brep::Color;
 use chordal_nurbs::DAffine3;
@@ -15,6 +16,11 @@ pub(super) struct Place<'n> {
 }
 
 impl Place<'_> {
+    /// What the node inherits.
+    pub(super) fn state(&self) -> State<Option<Color>> {
+        State { transform: self.transform, shared: self.color }
+    }
+
     /// What the faces of a shape have besides their shape.
     pub(super) fn look(&self, node: &Node) -> Look {
         Look {
