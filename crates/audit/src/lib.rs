@@ -17,7 +17,6 @@
 mod area;
 mod boundary;
 mod boundary_tree;
-mod box_tree;
 mod chart;
 mod context;
 mod cuts;

@@ -13,14 +13,13 @@
 //! that they lie one beside the other ([`crate::graph`]). The facets of a plane, cylinder, cone, sphere or
 //! plain torus lie so because their parameters do not overlap, which is checked in the chart.
 
-use crate::box_tree::{BoxTree, meet};
 use crate::context::Context;
 use crate::graph::is_graph;
 use crate::report::FaceCrossing;
 use crate::separation::PlaneFace;
 use crate::triangle_pair::{Facet3, cut_each_other};
 use chordal_brep::{FaceGeometry, FaceId};
-use chordal_nurbs::{Box3, Surface};
+use chordal_nurbs::{Box3, BoxTree, Surface};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
@@ -105,7 +104,7 @@ impl FacetsOfFace {
     /// The facets that meet a box, each with its own box.
     fn within(&self, region: &Box3) -> Vec<(Box3, u32)> {
         let all = self.facets.iter().map(Facet3::bounds).zip(0..);
-        all.filter(|(bounds, _)| meet(bounds, region)).collect()
+        all.filter(|(bounds, _)| bounds.meets(region)).collect()
     }
 
     fn cuts_with(&self, other: &Self) -> usize {
@@ -156,5 +155,5 @@ fn pairs_between(a: &FacetsOfFace, b: &FacetsOfFace, visit: &mut impl FnMut(u32,
 /// Calls `visit` for the items whose boxes meet `one`; they are in order along an axis.
 fn follow(one: &Box3, items: &[(Box3, u32)], axis: usize, visit: &mut impl FnMut(u32)) {
     let reached = items.iter().take_while(|item| item.0.min[axis] <= one.max[axis]);
-    reached.filter(|item| meet(&item.0, one)).for_each(|item| visit(item.1));
+    reached.filter(|item| item.0.meets(one)).for_each(|item| visit(item.1));
 }
