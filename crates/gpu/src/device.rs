@@ -1,4 +1,4 @@
-//! The device: which adapter, what it must be able to do, and what becomes of its errors.
+//! The device: the choice of an adapter, the capabilities that it must have, and its errors.
 
 use crate::device_choice::DeviceChoice;
 use crate::error::{Capability, GpuError, Task};
@@ -68,10 +68,10 @@ impl Gpu {
         }
         limits.max_storage_buffer_binding_size = limits.max_storage_buffer_binding_size.min(binding);
         let required = Features::IMMEDIATES;
-        let wished = Features::SHADER_F64 | Features::TIMESTAMP_QUERY | Features::MULTI_DRAW_INDIRECT_COUNT;
+        let optional = Features::SHADER_F64 | Features::TIMESTAMP_QUERY | Features::MULTI_DRAW_INDIRECT_COUNT;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("chordal"),
-            required_features: required | (adapter.features() & wished),
+            required_features: required | (adapter.features() & optional),
             required_limits: limits,
             ..Default::default()
         };
@@ -129,7 +129,7 @@ impl Gpu {
         polled.map(|_| ()).map_err(|e| GpuError::Lost(e.to_string()))
     }
 
-    /// Runs `work` and turns what the device objects to into an error.
+    /// Runs `work` and returns an error where the device reports one.
     ///
     /// # Errors
     /// What `work` returns, [`GpuError::Lost`], [`GpuError::OutOfMemory`] or [`GpuError::Device`].

@@ -84,7 +84,7 @@ pub struct Samples<R> {
     points: usize,
 }
 
-/// Points of one head at most: outputs are cut between heads, whatever the size of a grid.
+/// The most points of one head. Outputs are cut between heads, so that grids of any size can be cut.
 pub(crate) const HEAD_POINTS: usize = 1 << 16;
 
 impl<R: Real> Samples<R> {

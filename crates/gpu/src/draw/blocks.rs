@@ -102,7 +102,7 @@ impl Blocks {
     ) -> Result<Self, GpuError> {
         let mut lists: BTreeMap<(usize, u32, u32), Vec<Block>> = BTreeMap::new();
         for (index, placed) in drawn {
-            // Faces seen once share their calls, whatever their placement.
+            // Faces with one visible placement share draw calls, also where the placements differ.
             let (start, end, placement) =
                 if placed.len() == 1 { (0, 1, placed.start) } else { (placed.start, placed.end, 0) };
             let block = |first: u32| Block { face: *index as u32, placement, first, spare: 0 };

@@ -216,7 +216,7 @@ impl FaceBatch {
         &self.cells
     }
 
-    /// What the shaders know of the faces, and the places and spans of all of them.
+    /// The faces as the shaders read them, and the places and spans of all of them.
     #[cfg(test)]
     pub fn known(&self, gpu: &Gpu) -> Result<(&[FaceData], Vec<[f32; 2]>), GpuError> {
         let bytes = crate::evaluate::read_back(gpu, &self.places, self.places.size())?;
@@ -224,7 +224,7 @@ impl FaceBatch {
     }
 
     /// Evaluates all faces again after an edit of their control points that needs no other samples.
-    pub fn again(
+    pub fn evaluate_again(
         &mut self,
         gpu: &Gpu,
         renderer: &FaceRenderer,
@@ -329,7 +329,7 @@ impl Plan {
         found
     }
 
-    /// Tells the faces where their points are, and how many cells they have.
+    /// Enters for each face where its points are, and how many cells it has.
     fn place(&mut self, samples: &Samples<f32>) -> Vec<Cells> {
         let mut cells = Vec::new();
         for (index, face) in self.faces.iter_mut().enumerate() {
@@ -350,14 +350,14 @@ impl Plan {
         members: &[Member],
     ) -> Result<TrimTexture, GpuError> {
         let trimmed: Vec<usize> = (0..members.len()).filter(|k| !members[*k].face.loops.is_empty()).collect();
-        let wishes: Vec<Trimmed> = trimmed
+        let trims: Vec<Trimmed> = trimmed
             .iter()
             .map(|&k| {
                 let Member { face, location, texels, .. } = &members[k];
                 Trimmed { texels: *texels, loops: &face.loops, first: location.cubics }
             })
             .collect();
-        let texture = renderer.textures.draw(gpu, &wishes, &store.cubics)?;
+        let texture = renderer.textures.draw(gpu, &trims, &store.cubics)?;
         for (&k, slot) in trimmed.iter().zip(&texture.slots) {
             let face = &mut self.faces[k];
             face.rectangle = slot.rectangle(texture.page);

@@ -1,10 +1,11 @@
-//! Exact faces drawn again and again: what a frame can use of those before it is not evaluated anew.
+//! Exact faces over many frames: a frame uses samples of the frames before it where they are fine enough.
 //!
 //! 1. Placements and faces that the view cannot show are rejected by bounds (`visible.rs`).
-//! 2. For each face that is left the needed fineness is computed (`choice.rs`). Where samples that are there
-//!    serve, they are kept.
+//! 2. For each other face the needed fineness is computed (`choice.rs`). Samples that are fine enough are
+//!    kept.
 //! 3. The others are evaluated together, in one dispatch for each store, and become a batch (`batch.rs`).
-//! 4. Batches that hold little of use are evaluated anew with them, so that there are never many.
+//! 4. Faces of batches that are mostly unused, or small, are evaluated again in a new batch, so that there
+//!    are never many batches.
 
 use super::blocks::Blocks;
 use super::choice::Choice;
@@ -99,8 +100,8 @@ struct Seen {
     frustum: Frustum,
 }
 
-/// A face to be evaluated.
-type Wish = (Key, Choice);
+/// A face to be evaluated, and how finely.
+type Request = (Key, Choice);
 
 impl<'a> FaceScene<'a> {
     /// Uploads what does not change with the view. `scene` and `model` are those that `exact` was made of.
@@ -115,7 +116,7 @@ impl<'a> FaceScene<'a> {
         style: Style,
     ) -> Result<Self, GpuError> {
         let (mut scenery, _) = scenery_of(scene, model, style, Some(&exact));
-        // Through what is not opaque backs are seen.
+        // Backs are visible through faces that are not opaque.
         let veiled = seen_through(scene, &scenery.placed);
         for (part, _) in exact.parts.iter_mut().zip(veiled).filter(|(_, veiled)| *veiled) {
             part.faces.iter_mut().for_each(|f| f.outward = None);
@@ -252,7 +253,7 @@ impl<'a> FaceScene<'a> {
         })
     }
 
-    /// What the next frame may rely on, if this one shows everything.
+    /// What the next frame may reuse, if this frame shows everything.
     fn still_frame(&self, visible: &Visible, counts: &FrameCounts) -> Option<StillFrame> {
         let textured = self.trim == Trim::Texture;
         StillFrame::of(visible, counts, |level| {
@@ -295,9 +296,10 @@ impl<'a> FaceScene<'a> {
             self.lists.clear();
         }
         self.forget_levels(visible);
-        let worn = self.worn_batches(gpu);
+        let retired = self.batches_to_retire(gpu);
         let leave_out_backs = options.reject && options.section.is_none();
-        let (mut counts, mut keys, mut wishes) = (FrameCounts::default(), Vec::new(), Vec::<Wish>::new());
+        let (mut counts, mut keys, mut requests) =
+            (FrameCounts::default(), Vec::new(), Vec::<Request>::new());
         for level in &visible.levels {
             let at = (level.shape, level.class);
             let faces = &self.exact.parts[level.shape].faces;
@@ -309,12 +311,12 @@ impl<'a> FaceScene<'a> {
                     Shown::Yes => {
                         let needed = Choice::of(face, level.error);
                         match &sampled[index] {
-                            None => wishes.push(((at, index), needed)),
+                            None => requests.push(((at, index), needed)),
                             Some(s) if !s.choice.serves(&needed, options.trim == Trim::Texture) => {
-                                wishes.push(((at, index), needed.with_reserve(face)));
+                                requests.push(((at, index), needed.with_reserve(face)));
                             }
-                            Some(s) if s.stale || worn.contains(&s.batch) => {
-                                wishes.push(((at, index), s.choice));
+                            Some(s) if s.stale || retired.contains(&s.batch) => {
+                                requests.push(((at, index), s.choice));
                             }
                             Some(_) => {}
                         }
@@ -324,60 +326,63 @@ impl<'a> FaceScene<'a> {
             }
         }
         counts.faces = keys.len();
-        counts.evaluated = wishes.len();
-        counts.points = self.fulfil(gpu, renderer, wishes, &worn)?;
-        self.release(&worn);
+        counts.evaluated = requests.len();
+        counts.points = self.evaluate_requested(gpu, renderer, requests, &retired)?;
+        self.release(&retired);
         Ok((counts, keys))
     }
 
-    /// Evaluates faces; the number of points.
-    fn fulfil(
+    /// Evaluates the requested faces; returns the number of points.
+    fn evaluate_requested(
         &mut self,
         gpu: &Gpu,
         renderer: &FaceRenderer,
-        wishes: Vec<Wish>,
-        worn: &BTreeSet<u64>,
+        requests: Vec<Request>,
+        retired: &BTreeSet<u64>,
     ) -> Result<usize, GpuError> {
-        let mut by_batch: BTreeMap<Option<u64>, Vec<Wish>> = BTreeMap::new();
-        for wish in wishes {
-            let (at, face) = wish.0;
-            by_batch.entry(self.sampled[&at][face].map(|s| s.batch)).or_default().push(wish);
+        let mut by_batch: BTreeMap<Option<u64>, Vec<Request>> = BTreeMap::new();
+        for request in requests {
+            let (at, face) = request.0;
+            by_batch.entry(self.sampled[&at][face].map(|s| s.batch)).or_default().push(request);
         }
-        let mut by_store: BTreeMap<usize, Vec<Wish>> = BTreeMap::new();
+        let mut by_store: BTreeMap<usize, Vec<Request>> = BTreeMap::new();
         let mut points = 0;
-        for (id, wishes) in by_batch {
-            match id.filter(|id| !worn.contains(id)) {
-                Some(id) if self.stays(id, &wishes) => points += self.again(gpu, renderer, id, &wishes)?,
+        for (id, requests) in by_batch {
+            match id.filter(|id| !retired.contains(id)) {
+                Some(id) if self.covers_batch(id, &requests) => {
+                    points += self.evaluate_in_place(gpu, renderer, id, &requests)?
+                }
                 _ => {
-                    for wish in wishes {
-                        let ((shape, _), face) = wish.0;
-                        by_store.entry(self.locations[shape][face].store).or_default().push(wish);
+                    for request in requests {
+                        let ((shape, _), face) = request.0;
+                        by_store.entry(self.locations[shape][face].store).or_default().push(request);
                     }
                 }
             }
         }
-        for (store, wishes) in by_store {
-            points += self.new_generations(gpu, renderer, store, &wishes)?;
+        for (store, requests) in by_store {
+            points += self.evaluate_in_new_batches(gpu, renderer, store, &requests)?;
         }
         Ok(points)
     }
 
-    /// True where the faces are all of a batch's and need no other samples.
-    fn stays(&self, id: u64, wishes: &[Wish]) -> bool {
-        let same = |((at, face), choice): &Wish| self.sampled[at][*face].is_some_and(|s| s.choice == *choice);
-        self.batches[&id].live == wishes.len() && wishes.iter().all(same)
+    /// True where the requests are for all faces of a batch, with the samples that they have.
+    fn covers_batch(&self, id: u64, requests: &[Request]) -> bool {
+        let same =
+            |((at, face), choice): &Request| self.sampled[at][*face].is_some_and(|s| s.choice == *choice);
+        self.batches[&id].live == requests.len() && requests.iter().all(same)
     }
 
-    /// Evaluates a batch in place after an edit of its surfaces; the number of points.
-    fn again(
+    /// Evaluates a batch in place after an edit of its surfaces; returns the number of points.
+    fn evaluate_in_place(
         &mut self,
         gpu: &Gpu,
         renderer: &FaceRenderer,
         id: u64,
-        wishes: &[Wish],
+        requests: &[Request],
     ) -> Result<usize, GpuError> {
         let mut members = Vec::new();
-        for ((at, face), _) in wishes {
+        for ((at, face), _) in requests {
             let slot = self.sampled.get_mut(at).and_then(|faces| faces[*face].as_mut());
             if let Some(sampled) = slot {
                 sampled.stale = false;
@@ -385,20 +390,21 @@ impl<'a> FaceScene<'a> {
             }
         }
         let Some(batch) = self.batches.get_mut(&id) else { return Ok(0) };
-        batch.again(gpu, renderer, &self.stores[batch.store], members.into_iter())?;
+        batch.evaluate_again(gpu, renderer, &self.stores[batch.store], members.into_iter())?;
         Ok(batch.points)
     }
 
-    /// New batches for faces of one store, as many as the limits ask for; the number of points.
-    fn new_generations(
+    /// Makes new batches for faces of one store, as many as the limits of the device require; returns the
+    /// number of points.
+    fn evaluate_in_new_batches(
         &mut self,
         gpu: &Gpu,
         renderer: &FaceRenderer,
         store: usize,
-        wishes: &[Wish],
+        requests: &[Request],
     ) -> Result<usize, GpuError> {
         let most = most_points(gpu);
-        let members: Vec<Member> = wishes
+        let members: Vec<Member> = requests
             .iter()
             .map(|((at, face), choice)| {
                 let middle = self.scenery.shapes[at.0].middle;
@@ -426,8 +432,8 @@ impl<'a> FaceScene<'a> {
             let id = self.next_batch;
             self.next_batch += 1;
             self.batches.insert(id, made);
-            for (index, &((at, face), choice)) in wishes[first..end].iter().enumerate() {
-                let slot = &mut self.sampled.get_mut(&at).expect("entered when the face was asked for")[face];
+            for (index, &((at, face), choice)) in requests[first..end].iter().enumerate() {
+                let slot = &mut self.sampled.get_mut(&at).expect("entered when the face was requested")[face];
                 let old = slot.replace(Sampled { batch: id, index, choice, stale: false });
                 forget(&mut self.batches, old);
             }
@@ -436,22 +442,22 @@ impl<'a> FaceScene<'a> {
         Ok(points)
     }
 
-    /// Batches that are to be evaluated anew: of too many small ones the smaller half, and those that are
-    /// mostly unused.
-    fn worn_batches(&self, gpu: &Gpu) -> BTreeSet<u64> {
+    /// Batches whose faces move to new ones: the smaller half of the small batches where there are too many,
+    /// and batches that are mostly unused.
+    fn batches_to_retire(&self, gpu: &Gpu) -> BTreeSet<u64> {
         let small = |g: &FaceBatch| 2 * g.points < most_points(gpu);
         let mut by_use: Vec<(usize, u64)> =
             self.batches.iter().filter(|(_, g)| small(g)).map(|(id, g)| (g.live, *id)).collect();
         by_use.sort_unstable();
-        let worn = if by_use.len() > MOST_BATCHES { by_use.len() / 2 } else { 0 };
+        let retired = if by_use.len() > MOST_BATCHES { by_use.len() / 2 } else { 0 };
         let unused = self.batches.iter().filter(|(_, g)| 4 * g.live < g.faces());
-        by_use.iter().take(worn).map(|(_, id)| *id).chain(unused.map(|(id, _)| *id)).collect()
+        by_use.iter().take(retired).map(|(_, id)| *id).chain(unused.map(|(id, _)| *id)).collect()
     }
 
-    /// Drops worn batches; what they still hold is of faces that are not seen now.
-    fn release(&mut self, worn: &BTreeSet<u64>) {
+    /// Drops retired batches. Faces that are still in them are not visible now.
+    fn release(&mut self, retired: &BTreeSet<u64>) {
         for slot in self.sampled.values_mut().flatten() {
-            if slot.is_some_and(|s| worn.contains(&s.batch)) {
+            if slot.is_some_and(|s| retired.contains(&s.batch)) {
                 forget(&mut self.batches, slot.take());
             }
         }

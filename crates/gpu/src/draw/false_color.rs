@@ -1,4 +1,4 @@
-//! What is painted on faces: curvature of the exact surface, distance of the mesh from it.
+//! Colours for values on faces: the curvature of the exact surface, or the distance of the mesh from it.
 
 use chordal_nurbs::{DVec2, DVec3, Surface, math};
 
@@ -8,7 +8,7 @@ pub(crate) fn mean_curvature(surface: &Surface, uv: DVec2, normal: DVec3) -> Opt
     let (e, f, g) = (jet.du.dot(jet.du), jet.du.dot(jet.dv), jet.dv.dot(jet.dv));
     let (l, m, n) = (jet.duu.dot(normal), jet.duv.dot(normal), jet.dvv.dot(normal));
     let area = e * g - f * f;
-    // Towards a pole the area element vanishes; what is left of it there are rounding errors.
+    // Towards a pole the area element vanishes; there it holds rounding errors only.
     let regular = area > 1e-12 * math::square(e.max(g));
     // A convex outside bends away from its normal.
     regular.then(|| -(e * n - 2.0 * f * m + g * l) / (2.0 * area)).filter(|h| h.is_finite())

@@ -4,7 +4,8 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FrameCounts {
-    /// Faces drawn, those of parts that are placed several times once for all placements that share samples.
+    /// Faces drawn. A face of a part that is placed several times counts once for all placements that share
+    /// its samples.
     pub faces: usize,
     /// Faces evaluated for this frame.
     pub evaluated: usize,

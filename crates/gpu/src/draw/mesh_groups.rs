@@ -32,7 +32,7 @@ pub(crate) struct Lines {
 }
 
 impl Triangles {
-    /// Those of all shapes.
+    /// The groups of all shapes.
     pub fn upload(gpu: &Gpu, shapes: &[Shape]) -> Result<Vec<Self>, GpuError> {
         let bytes = |s: &Shape| (s.vertices.len() * size_of::<Vertex>()).max(s.triangles.len() * 12);
         split(shapes, bytes, gpu.binding_limit()).map(|group| Self::of(gpu, shapes, group)).collect()
@@ -65,7 +65,7 @@ impl Triangles {
 }
 
 impl Lines {
-    /// Those of all shapes, for a view and placements.
+    /// The lines of all shapes, for a view and placements.
     pub fn upload(
         gpu: &Gpu,
         pipeline: &RenderPipeline,

@@ -1,4 +1,4 @@
-//! From a meshed scene to what is drawn.
+//! Triangles and lines to draw, from a meshed scene.
 
 use super::camera;
 use super::false_color::{distance, diverging, mean_curvature, sequential};
@@ -24,7 +24,7 @@ pub struct Legend {
 pub(crate) const DEFAULT_COLOR: [u8; 4] = [182, 190, 200, 255];
 /// The colour of faces under the lines of a wireframe.
 const PALE: [u8; 4] = [222, 226, 232, 255];
-/// A facet is painted with its error at the corners of so many rows of smaller ones.
+/// A facet is painted with its error at the corners of this many rows of smaller facets.
 const ERROR_ROWS: usize = 4;
 
 /// Shapes for a style. `model` is what the scene was made of; measured styles need it.

@@ -4,7 +4,7 @@ use super::camera::{Camera, Projection, View};
 use super::srgb::linear;
 use glam::DVec3;
 
-/// What is seen of a model.
+/// How a model is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Style {
     /// Lit faces in the model's colours, with its edges as lines.
@@ -107,7 +107,7 @@ pub struct RenderOptions {
     pub zoom: f64,
     /// Move a camera with a place of its own so that it sees everything; named views always do.
     pub fit: bool,
-    /// What is seen of the model.
+    /// How the model is drawn.
     pub style: Style,
     /// Draw the lines of the style.
     pub lines: bool,
@@ -192,7 +192,7 @@ impl RenderOptions {
         Self { reject, ..self }
     }
 
-    /// The camera for what is to be seen.
+    /// The camera that shows these points.
     pub fn camera(&self, points: &[DVec3]) -> Camera {
         Camera::looking_at(self.view, self.projection, points, self.size, self.zoom, self.fit)
     }

@@ -48,7 +48,7 @@ pub(crate) fn pipeline(
     pipeline_into(gpu, shader, [vertex, fragment], buffers, (&[COLOR], SAMPLES))
 }
 
-/// As [`pipeline`], into targets of other formats with so many samples a pixel.
+/// As [`pipeline`], into targets of other formats, with a number of samples per pixel.
 pub(crate) fn pipeline_into(
     gpu: &Gpu,
     shader: Shader,

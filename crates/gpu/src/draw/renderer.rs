@@ -115,7 +115,7 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// Room for so many placements.
+    /// Makes room for a number of placements.
     pub fn new(gpu: &Gpu, placements: usize) -> Result<Self, GpuError> {
         let view = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("view"),

@@ -79,7 +79,8 @@ pub(crate) struct TrimTexture {
     texture: wgpu::Texture,
 }
 
-/// One face's wish: texels, its loops, and the number of their first piece in the buffer of all.
+/// One face to be drawn: the texels that it needs, its loops, and the number of their first piece in the
+/// buffer.
 pub(crate) struct Trimmed<'a> {
     pub texels: [f64; 2],
     pub loops: &'a [Cubic],
@@ -135,8 +136,8 @@ impl TrimTextures {
         let limits = gpu.device.limits();
         let page_limit = PAGE.min(limits.max_texture_dimension_2d);
         let layer_limit = LAYERS.min(limits.max_texture_array_layers);
-        let wishes: Vec<_> = faces.iter().map(|f| f.texels).collect();
-        let (page, layers, slots) = pack_within(&wishes, page_limit, layer_limit);
+        let rectangles: Vec<_> = faces.iter().map(|f| f.texels).collect();
+        let (page, layers, slots) = pack_within(&rectangles, page_limit, layer_limit);
         let texture = |layers: u32, samples: u32, usage: TextureUsages| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("trim texture"),
@@ -228,14 +229,14 @@ fn fans_of(faces: &[Trimmed], slots: &[Slot], layer: u32) -> Vec<Fan> {
     fans
 }
 
-/// Packs the wishes, at half their size and again where they take too many layers: side of a layer, layers,
-/// slots.
-fn pack_within(wishes: &[[f64; 2]], page_limit: u32, layer_limit: u32) -> (u32, u32, Vec<Slot>) {
+/// Packs rectangles; halves them until they fit into the layers that there are. Returns the side of a layer,
+/// the number of layers and the slots.
+fn pack_within(rectangles: &[[f64; 2]], page_limit: u32, layer_limit: u32) -> (u32, u32, Vec<Slot>) {
     let mut scale = 1.0;
     loop {
-        let sizes: Vec<_> = wishes
+        let sizes: Vec<_> = rectangles
             .iter()
-            .map(|wish| wish.map(|x| ((x * scale).ceil() as u32).clamp(1, page_limit)))
+            .map(|rectangle| rectangle.map(|x| ((x * scale).ceil() as u32).clamp(1, page_limit)))
             .collect();
         let largest = sizes.iter().flatten().copied().max().unwrap_or(1);
         let area: f64 = sizes.iter().map(|s| f64::from(s[0]) * f64::from(s[1])).sum();

@@ -9,7 +9,7 @@ use chordal_nurbs::math;
 use glam::{DAffine3, DVec3, DVec4};
 use std::ops::Range;
 
-/// Lines and borders reach so many pixels beyond what they belong to.
+/// Lines and borders reach this many pixels beyond the faces that they belong to.
 const REACH: f64 = 4.0;
 /// Placements whose errors differ by more than this are sampled apart.
 const CLASS: f64 = 4.0;
@@ -201,7 +201,7 @@ impl Visible {
         let class_of =
             |error: f64| if classes { (math::ln(error) / math::ln(CLASS)).floor() as i32 } else { i32::MAX };
         if classes {
-            // Nearest first, which also spares work on what they hide.
+            // Nearest first: fragments behind them then fail the depth test early.
             seen.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
         let s = &scenery.shapes[shape];

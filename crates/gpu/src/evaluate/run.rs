@@ -298,7 +298,8 @@ pub struct Evaluated<R> {
 }
 
 fn pipeline<R: Real>(gpu: &Gpu, shader: Shader, entry: &str) -> ComputePipeline {
-    // Said outright: a layout derived from the entry point would leave out what that one does not read.
+    // The layout is explicit: one derived from the entry point would leave out bindings that it does not
+    // read.
     let entries: Vec<_> =
         shader.bindings.iter().map(|&(binding, read_only)| storage_entry(binding, read_only)).collect();
     let group = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

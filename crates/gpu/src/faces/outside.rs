@@ -61,7 +61,7 @@ impl Shells {
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
         self.parents[high] = low;
-        // Shorten the way for what is joined again and again.
+        // Shorten the path, for sets that are joined often.
         for mut face in [a, b] {
             while self.parents[face] != face {
                 face = std::mem::replace(&mut self.parents[face], low);

@@ -30,10 +30,11 @@ pub(crate) fn steps(face: &TrimmedFace, error: f64) -> [f64; 2] {
     steps
 }
 
-/// The smallest and the largest error that so many steps serve, being at most twice what is needed.
+/// The smallest and the largest error for which this number of steps is used: at most twice the steps that
+/// are needed.
 pub(crate) fn errors_served(face: &TrimmedFace, steps: [f64; 2]) -> [f64; 2] {
     if 4.0 * steps[0] * steps[1] > MOST_POINTS || steps.iter().any(|s| *s >= MOST) {
-        // What the limits have cut is requested again each time.
+        // A number that the limits have cut is requested again each time.
         return [f64::INFINITY, 0.0];
     }
     let of = |axis: usize| {
