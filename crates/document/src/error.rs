@@ -1,6 +1,6 @@
 //! Why a document could not be read or written.
 
-/// A document that yields no model, or a model that has no document; one clear sentence each.
+/// A document that yields no model, or a model that cannot be written. Each message is one sentence.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentError {

@@ -1,4 +1,5 @@
-//! How the text is laid out: every object begins a line, so that errors name a useful line and files can be compared.
+//! The layout of the text: every object begins a line, so that errors name a useful line and files can be
+//! compared.
 
 use serde_json::ser::{CompactFormatter, Formatter};
 use std::io::{self, Write};

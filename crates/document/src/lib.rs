@@ -1,7 +1,8 @@
-//! Chordal's own lossless JSON of an exact model: what a reader made, written down and read back, bit for bit.
+//! The exact model as JSON without loss: a model that is written and read again is the same, bit for bit.
 //!
-//! The schema is described in `docs/model-json.md` and is kept apart from the types in memory: those may change, the
-//! files stay readable. Numbers are 64-bit reals written with the fewest digits that read back as the same bits.
+//! `docs/model-json.md` describes the schema. Its types are separate from those in memory, so that the types
+//! in memory can change and old files stay readable. Numbers are 64-bit reals written with the fewest digits
+//! that read back as the same bits.
 
 mod error;
 mod geometry;
@@ -38,13 +39,13 @@ pub fn to_json(model: &Model) -> Result<String, DocumentError> {
 
 /// The model of a document.
 ///
-/// A face whose data make no sense is a failed face of the model, with its reason; anything else that cannot be used
-/// is left out with a warning.
+/// A face with invalid data becomes a failed face of the model, with the reason. All other invalid data are
+/// ignored with a warning.
 ///
 /// # Errors
 /// [`DocumentError`] where the text is no document of this schema, or its tree is none.
 pub fn from_json(bytes: &[u8]) -> Result<Model, DocumentError> {
-    /// Read first: another version may differ in everything else.
+    /// Read before everything else, which may differ in another version.
     #[derive(Deserialize)]
     struct Head {
         schema: String,

@@ -1,4 +1,4 @@
-//! A model out of the document's form: the tree, and the parts that it places.
+//! Makes a model from a document: the tree, and the parts that it places.
 
 use crate::load_geometry::{Sound, p3};
 use crate::load_issue::{issue, source};
@@ -8,7 +8,8 @@ use crate::{DocumentError, real::Real};
 use chordal_brep as brep;
 use chordal_nurbs::{DAffine3, DVec3};
 
-/// Trees are walked by recursion in places; deeper ones are meant to break something.
+/// The deepest tree that is read. Trees are walked by recursion, so a deeper one could exhaust the stack;
+/// real assemblies are far less deep.
 const MAX_DEPTH: usize = 1000;
 
 pub(crate) fn model(document: Document) -> Result<brep::Model, DocumentError> {
@@ -35,7 +36,7 @@ pub(crate) fn model(document: Document) -> Result<brep::Model, DocumentError> {
     })
 }
 
-/// Every node is reached once at most, so that a walk ends.
+/// Checks that every node is reached at most once, so that a walk ends.
 fn check_tree(nodes: &[brep::Node], roots: &[brep::NodeId]) -> Result<(), DocumentError> {
     let mut reached = vec![false; nodes.len()];
     let mut stack: Vec<_> = roots.iter().map(|&root| (root, 0)).collect();

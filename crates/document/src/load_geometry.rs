@@ -1,4 +1,4 @@
-//! Curves and surfaces out of the document's form, checked: what comes out is valid for every algorithm.
+//! Makes curves and surfaces from a document, and checks them: all algorithms may rely on the result.
 
 use crate::geometry::{
     Curve, Curve2, Frame, Frame2, P2, P3, Segment, Segment2, Spline, SplineSurface, Surface,
@@ -8,10 +8,11 @@ use chordal_brep::{ReadIssue, Real as IssueReal};
 use chordal_nurbs::{self as nurbs, DVec2, DVec3, Range};
 use std::sync::Arc;
 
-/// A value, or what is wrong with it.
+/// A value, or the reason why it is invalid.
 pub(crate) type Sound<T> = Result<T, ReadIssue>;
 
-/// Frames may be off from unit length and right angles by this much: files written by hand round to ten digits.
+/// The largest deviation of the axes of a frame from unit length and from right angles. Files that are
+/// written by hand round to ten digits.
 const ORTHONORMAL: f64 = 1e-9;
 
 pub(crate) fn finite(value: Real, what: &'static str) -> Sound<f64> {
@@ -119,7 +120,7 @@ pub(crate) fn curve2(curve: Curve2) -> Sound<nurbs::Curve2> {
     })
 }
 
-/// The surfaces of a part so far: a surface is made from earlier ones only.
+/// The surfaces of a part that are made already. A surface refers to earlier ones only.
 #[derive(Debug, Default)]
 pub(crate) struct Surfaces(Vec<Sound<Arc<nurbs::Surface>>>);
 
@@ -130,7 +131,7 @@ impl Surfaces {
     }
 
     /// # Errors
-    /// What is wrong with the surface, or that there is none.
+    /// Where the surface is invalid or missing.
     pub(crate) fn get(&self, place: usize) -> Sound<Arc<nurbs::Surface>> {
         match self.0.get(place) {
             Some(Ok(surface)) => Ok(surface.clone()),

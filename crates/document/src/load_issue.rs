@@ -1,4 +1,4 @@
-//! Sources and issues out of the document's form.
+//! Makes sources and issues from a document.
 
 use crate::schema::{Source, Warning};
 use chordal_brep as brep;
@@ -7,7 +7,7 @@ pub(crate) fn source((entity, line): Source) -> brep::Source {
     brep::Source { entity, line }
 }
 
-/// An issue as the document has it: the values are gone, code and sentence are kept.
+/// An issue that was read from a document: it has the code and the sentence, and no typed values.
 pub(crate) fn issue(warning: Warning) -> brep::Issue {
     let severity = if warning.lost { brep::Severity::Error } else { brep::Severity::Warning };
     let known = brep::ReadIssue::CODES.iter().find(|code| **code == warning.code);

@@ -1,5 +1,5 @@
-//! A part out of the document's form. What refers to something that is not there, or that makes no sense, does not
-//! enter the part: a face fails with the reason, everything else is ignored with an issue.
+//! Makes a part from a document. A face with an invalid reference or invalid data fails, with the reason. All
+//! other invalid items are ignored, with an issue.
 
 use crate::load_geometry::{Sound, Surfaces, curve2, finite, p3, range};
 use crate::load_issue::{issue, source};
@@ -11,7 +11,7 @@ use brep::{EdgeId, FaceId, Issue, ReadIssue, ShellId, VertexId};
 use chordal_brep as brep;
 use std::sync::Arc;
 
-/// Loading one part: places in the file to places in the part.
+/// A part while it is loaded: for every index in the file the index in the part.
 struct Loader<'w> {
     surfaces: Surfaces,
     vertices: Vec<Sound<VertexId>>,
@@ -145,7 +145,7 @@ impl Loader<'_> {
         Ok(brep::Coedge { edge, forward: coedge.forward, pcurves })
     }
 
-    /// Every coedge begins at the vertex at which the one before it ends.
+    /// Checks that every coedge begins at the vertex at which the one before it ends.
     fn check_chain(&self, coedges: &[brep::Coedge]) -> Sound<()> {
         let ends = |i: usize| {
             let coedge = &coedges[i % coedges.len()];
@@ -184,7 +184,7 @@ impl Loader<'_> {
         });
     }
 
-    /// The places of a list that exist, with a warning for the others.
+    /// The valid indices of a list; adds a warning for the others.
     fn present(&mut self, list: Vec<u32>, count: usize, what: &'static str, at: (u64, u32)) -> Vec<u32> {
         let (there, missing): (Vec<u32>, Vec<u32>) =
             list.into_iter().partition(|&place| (place as usize) < count);

@@ -1,4 +1,4 @@
-//! Numbers that come back as they were: finite ones as JSON numbers, the others, which JSON lacks, as strings.
+//! Reals without loss: finite ones as JSON numbers, infinities and NaN, which JSON lacks, as strings.
 
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -1,4 +1,4 @@
-//! A model into the document's form.
+//! Makes a document from a model.
 
 use crate::save_geometry::{Surfaces, curve2, p3};
 use crate::schema::{
@@ -51,7 +51,7 @@ fn warning(issue: &brep::Issue) -> Warning {
 
 fn part(part: &brep::Part) -> Res<Part> {
     let mut surfaces = Surfaces::default();
-    // Faces first: their surfaces get the low places.
+    // Faces first: their surfaces get the low indices.
     let faces = part.faces.iter().map(|f| face(f, &mut surfaces)).collect::<Res<_>>()?;
     let edges = part.edges.iter().map(|e| edge(e, &mut surfaces)).collect::<Res<_>>()?;
     Ok(Part {

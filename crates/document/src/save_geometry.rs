@@ -1,4 +1,4 @@
-//! Curves and surfaces into the document's form.
+//! Makes the curves and surfaces of a document.
 
 use crate::DocumentError;
 use crate::geometry::{
@@ -61,7 +61,7 @@ pub(crate) fn curve2(curve: &nurbs::Curve2) -> Result<Curve2, DocumentError> {
     })
 }
 
-/// A part's surfaces, each written once however often it is used.
+/// A part's surfaces, each written once.
 #[derive(Debug, Default)]
 pub(crate) struct Surfaces {
     pub written: Vec<Surface>,
@@ -69,7 +69,7 @@ pub(crate) struct Surfaces {
 }
 
 impl Surfaces {
-    /// The place of a surface in the table; surfaces that it is made from come before it.
+    /// The index of a surface in the table. The surfaces that it is made from have lower ones.
     pub(crate) fn place(&mut self, surface: &Arc<nurbs::Surface>) -> Result<usize, DocumentError> {
         if let Some(&known) = self.known.get(&Arc::as_ptr(surface)) {
             return Ok(known);

@@ -4,7 +4,7 @@ use crate::geometry::{Curve, Curve2, P3, Surface};
 use crate::real::Real;
 use serde::{Deserialize, Serialize};
 
-/// `[entity, line]` in the file that the model came from; left out where nothing is known.
+/// `[entity, line]` in the file that the model was read from; absent where it is unknown.
 pub(crate) type Source = (u64, u32);
 
 /// Linear RGB with opacity.
@@ -43,7 +43,7 @@ pub(crate) struct Document {
 pub(crate) struct Node {
     #[serde(default)]
     pub name: String,
-    /// Images of x, y and z, then of the origin.
+    /// The images of the x, y and z axes, then of the origin.
     pub transform: [P3; 4],
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part: Option<u32>,
@@ -57,7 +57,7 @@ pub(crate) struct Node {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Warning {
-    /// The code of the issue; documents of before have none.
+    /// The code of the issue; older documents have none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub code: String,
     pub message: String,
@@ -72,7 +72,7 @@ pub(crate) struct Warning {
 #[serde(untagged)]
 pub(crate) enum Failure {
     Issue(Warning),
-    /// A sentence, as documents of before have it.
+    /// A sentence, in older documents.
     Sentence(String),
 }
 
