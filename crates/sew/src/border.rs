@@ -1,4 +1,4 @@
-//! Borders: the edges that one coedge alone uses, each as a polyline with parameters.
+//! Borders: the edges that exactly one coedge uses, each as a polyline with parameters.
 
 use crate::foot::segment_distance;
 use chordal_brep::{EdgeId, Loop, Part};
@@ -7,11 +7,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// A chord is halved while the curve strays from it by more than this part of its length: boxes stay slim.
+/// A chord is halved while its curve is further from it than this share of its length, so that boxes stay
+/// slim.
 const STRAY: f64 = 0.05;
-/// Halvings of one smooth piece at most.
+/// The most halvings of one smooth piece.
 const DEPTH: usize = 8;
-/// Chords of a closed edge at least, so that which way it runs can be seen.
+/// The fewest chords of a closed edge: fewer would not show its direction.
 const CLOSED_CHORDS: usize = 6;
 
 /// Where an edge is used.
@@ -23,7 +24,7 @@ pub(crate) struct Use {
     pub forward: bool,
 }
 
-/// One edge with one use.
+/// An edge with one use.
 #[derive(Clone, Debug)]
 pub(crate) struct Border {
     pub edge: EdgeId,
@@ -35,7 +36,7 @@ pub(crate) struct Border {
     /// Parameters of the polyline, ends included.
     pub t: Vec<f64>,
     pub points: Vec<DVec3>,
-    /// Per chord, about how far the curve strays from it.
+    /// For each chord, the approximate distance of the curve from it.
     pub stray: Vec<f64>,
     pub length: f64,
 }
@@ -44,7 +45,7 @@ pub(crate) struct Border {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Borders {
     pub all: Vec<Border>,
-    /// Per chord of the tree: border and chord in it.
+    /// For each chord of the tree, its border and its index there.
     pub chords: Vec<(u32, u32)>,
     pub tree: BoxTree,
 }
@@ -90,7 +91,7 @@ impl Borders {
         Self { all, chords, tree: BoxTree::new(boxes) }
     }
 
-    /// The distance of `p` from a chord of the tree, less what the curve may stray from it.
+    /// The distance of `p` from a chord of the tree, minus the distance of the curve from that chord.
     pub fn distance(&self, chord: u32, p: DVec3) -> f64 {
         let (b, k) = self.chords[chord as usize];
         let border = &self.all[b as usize];
@@ -115,7 +116,7 @@ impl Border {
         Some(Self { edge: id, of, curve, range: edge.range, ends, t, points, stray, length })
     }
 
-    /// Parameters of a polyline of any edge, ends included, at least so many steps.
+    /// Parameters of a polyline of any edge, ends included, with a least number of steps.
     pub fn parameters(curve: &Curve, range: Range, least: usize) -> Vec<f64> {
         if matches!(curve, Curve::Line { .. }) {
             return (0..=least).map(|i| range.start + range.length() * i as f64 / least as f64).collect();
@@ -149,7 +150,7 @@ fn halved(t: &[f64]) -> Vec<f64> {
     fine
 }
 
-/// About how far the curve strays from a chord: at three places.
+/// The approximate distance of the curve from a chord, measured at three places.
 fn strays(curve: &Curve, t0: f64, t1: f64) -> f64 {
     if matches!(curve, Curve::Line { .. }) {
         return 0.0;

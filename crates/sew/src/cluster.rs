@@ -1,5 +1,5 @@
-//! Vertices within the tolerance of each other become one, transitively as long as no vertex moves further
-//! than that.
+//! Vertices within the tolerance of each other are merged, transitively as long as no vertex moves by more
+//! than the tolerance.
 //!
 //! Pairs are joined in the order of their distances. A join that would move a vertex too far, or that would
 //! make the two ends of an edge that must stay the same, is left out.
@@ -7,7 +7,7 @@
 use chordal_nurbs::{Box3, BoxTree};
 use glam::DVec3;
 
-/// Neighbours of one vertex that are looked at: more are other copies of the same few.
+/// The most neighbours of one vertex that are considered. Further ones are copies of these.
 const NEIGHBOURS: usize = 32;
 
 /// A vertex that may be merged.
@@ -16,14 +16,14 @@ pub(crate) struct Corner {
     /// The vertex of the part.
     pub vertex: u32,
     pub point: DVec3,
-    /// Edges that must not change end here: the others move first.
+    /// Edges that must not change end at this vertex: the other vertices move first.
     pub anchored: bool,
 }
 
 /// The merged vertices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clusters {
-    /// Per corner, its cluster.
+    /// For each corner, its cluster.
     pub of: Vec<u32>,
     pub all: Vec<Cluster>,
 }
@@ -36,7 +36,7 @@ pub(crate) struct Cluster {
     pub members: Vec<u32>,
 }
 
-/// Merges corners; `apart` lists, per corner, those that it must stay apart from.
+/// Merges corners. `apart` lists, for each corner, the corners that it must not be merged with.
 pub(crate) fn cluster(corners: &[Corner], apart: &[Vec<u32>], tolerance: f64) -> Clusters {
     cluster_pairs(corners, apart, tolerance, &close_pairs(corners, tolerance))
 }
@@ -75,7 +75,7 @@ fn close_pairs(corners: &[Corner], tolerance: f64) -> Vec<(f64, u32, u32)> {
                 near.push((d, j));
             }
         });
-        // Of many copies at one place each is joined to the next one.
+        // Where many copies are at one place, each is joined to the next.
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(before(i, a.1).cmp(&before(i, b.1))));
         let kept = near.iter().take(NEIGHBOURS);
         pairs.extend(kept.map(|&(d, j)| (d, (i as u32).min(j), (i as u32).max(j))));
@@ -94,7 +94,7 @@ struct State<'a> {
     apart: &'a [Vec<u32>],
     tolerance: f64,
     parent: Vec<u32>,
-    /// Of the roots.
+    /// The members of each root.
     members: Vec<Vec<u32>>,
 }
 
@@ -140,13 +140,13 @@ impl State<'_> {
         })
     }
 
-    /// The middle of the anchored members, or else of all.
+    /// The mean of the anchored members, or of all where none is anchored.
     fn target(&self, members: &[u32]) -> DVec3 {
         let anchored: Vec<u32> =
             members.iter().copied().filter(|&m| self.corners[m as usize].anchored).collect();
         let of = if anchored.is_empty() { members } else { &anchored };
         let first = self.corners[of[0] as usize].point;
-        // From the first one, so that copies at one place stay where they are to the last bit.
+        // Relative to the first, so that copies at one place keep their exact coordinates.
         let sum: DVec3 = of.iter().map(|&m| self.corners[m as usize].point - first).sum();
         first + sum / of.len() as f64
     }

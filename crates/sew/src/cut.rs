@@ -1,5 +1,5 @@
-//! T-ends: an edge is cut where a vertex of another one lies on it, so that what overlaps becomes pieces
-//! between the same vertices.
+//! T-junctions: an edge is cut where a vertex of another edge lies on it, so that overlapping edges become
+//! pieces between the same vertices.
 
 use crate::border::{Border, Borders};
 use crate::cluster::Clusters;
@@ -7,9 +7,9 @@ use crate::foot::{foot, segment_distance};
 use chordal_nurbs::{Box3, Range};
 use rayon::prelude::*;
 
-/// Cuts keep this share of the tolerance away from each other and from the ends.
+/// Cuts are at least this share of the tolerance away from each other and from the ends.
 const SHORTEST: f64 = 0.05;
-/// A vertex may cut one edge twice only where it runs this many tolerances between the two places.
+/// A vertex may cut one edge twice only where the edge is this many tolerances long between the two places.
 const SAME_VERTEX: f64 = 3.0;
 
 /// A part of a border between two merged vertices.
@@ -25,7 +25,7 @@ pub(crate) struct Piece {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pieces {
     pub all: Vec<Piece>,
-    /// Per border the run of its pieces.
+    /// For each border, the range of its pieces.
     pub of: Vec<(u32, u32)>,
     /// The largest distance of a cut from its vertex.
     pub largest_move: f64,
@@ -79,7 +79,7 @@ impl Pieces {
     }
 }
 
-/// Where one vertex lies on borders that do not end in it.
+/// The places where one vertex lies on borders that do not end in it.
 fn cuts_at(
     borders: &Borders,
     ends: &[[u32; 2]],
@@ -103,7 +103,7 @@ fn cuts_at(
     });
     near.sort_unstable_by_key(|n| (n.0, n.1));
     let mut found: Vec<Cut> = Vec::new();
-    // Chords next to each other are one approach.
+    // Consecutive chords are one approach.
     for run in near.chunk_by(|a, b| a.0 == b.0 && a.1 + 1 == b.1) {
         let border = &borders.all[run[0].0 as usize];
         let feet = run.iter().map(|&(_, _, t)| foot(&border.curve, border.range, p, t));
@@ -115,8 +115,8 @@ fn cuts_at(
     found
 }
 
-/// Those of the cuts of a border (in the order of their parameters) that leave no sliver; the closer one of
-/// two.
+/// The cuts of a border, in the order of their parameters, that leave no sliver; of two cuts that are too
+/// near to each other, the one closer to its vertex.
 fn kept(border: &Border, ends: [u32; 2], cuts: &[Cut], tolerance: f64) -> Vec<Cut> {
     let shortest = SHORTEST * tolerance;
     let apart = |t0: f64, t1: f64| border.curve.point(t0).distance(border.curve.point(t1));
@@ -146,7 +146,7 @@ fn kept(border: &Border, ends: [u32; 2], cuts: &[Cut], tolerance: f64) -> Vec<Cu
     kept
 }
 
-/// About the length of the border between two parameters.
+/// The approximate length of the border between two parameters.
 fn run_length(border: &Border, t0: f64, t1: f64) -> f64 {
     let mut last = border.curve.point(t0);
     let mut length = 0.0;

@@ -1,10 +1,10 @@
-//! Integrals over a face from its loops alone: which way a closed shell faces, and whether a point is inside
-//! it.
+//! Integrals over a face from its loops alone: the orientation of a closed shell, and whether a point is
+//! inside it.
 //!
 //! For any g on the parameter plane, ∬ g du dv = −∮ F du with F(u, v) = ∫ g dv from v₀ to v, the interior on
-//! the left (Green). A loop that winds round a closed direction needs no seam so, and a pole at v₀ adds
-//! nothing. Where a loop winds in v the parts of u and v are exchanged. The integrals are taken by a
-//! quadrature that is good for signs and whole numbers.
+//! the left (Green). So a loop that winds round a closed direction needs no seam, and a pole at v₀ adds
+//! nothing. Where a loop winds in v, u and v change roles. The quadrature is accurate enough for signs and
+//! for whole numbers.
 
 use crate::uv_loops::{UvLoop, uv_loops};
 use chordal_brep::{Face, FaceGeometry, Part};
@@ -18,7 +18,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_9),
 ];
-/// Pieces that each path from v₀ is cut into.
+/// Each path from v₀ is cut into this many pieces.
 const PIECES: usize = 4;
 
 /// The flux of a field through a face along its normal as a part of its shell; `None` where it has no surface
@@ -83,7 +83,8 @@ fn base(surface: &Surface, loops: &[UvLoop], axis: usize) -> Option<f64> {
     loops.iter().flat_map(|l| &l.points).map(|p| p[other]).min_by(f64::total_cmp)
 }
 
-/// Three times the volume that faces enclose, and the sum of the sizes of its parts; about `origin`.
+/// Three times the volume that faces enclose, and the sum of the absolute values of its parts, relative to
+/// `origin`.
 pub(crate) fn volume(part: &Part, faces: &[usize], origin: DVec3) -> Option<(f64, f64)> {
     // On a plane the density is constant.
     let pieces = |face: &Face| if is_plane(face) { 1 } else { PIECES };

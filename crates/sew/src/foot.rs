@@ -1,12 +1,13 @@
-//! The foot of a point on a piece of a curve, from a parameter that is near already.
+//! The foot of a point on a piece of a curve, from a start parameter near it.
 
 use chordal_nurbs::{Curve, Range, segment_foot};
 use glam::DVec3;
 
-/// Newton steps; they halve the number of wrong digits once the start is in the right valley.
+/// The most Newton steps. Each halves the number of wrong digits once the start is near the local minimum.
 const STEPS: usize = 30;
 
-/// The parameter in `range` of the closest point in the valley of `start`, and its distance from `p`.
+/// The parameter in `range` of the local minimum of the distance that `start` leads to, and its distance from
+/// `p`.
 pub(crate) fn foot(curve: &Curve, range: Range, p: DVec3, start: f64) -> (f64, f64) {
     if let Curve::Line { origin, direction } = curve {
         let t = range.clamp((p - *origin).dot(*direction) / direction.length_squared());
@@ -52,7 +53,7 @@ fn shorter_until_nearer(
     None
 }
 
-/// The distance of `p` from the segment `a`–`b`, and where its foot lies between them (0 to 1).
+/// The distance of `p` from the segment `a`–`b`, and the place of its foot between them (0 to 1).
 pub(crate) fn segment_distance(p: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
     let s = segment_foot(p, a, b);
     ((a + (b - a) * s).distance(p), s)

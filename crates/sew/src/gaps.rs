@@ -1,9 +1,9 @@
-//! How far borders are from each other: the merge tolerance `auto`, and what `info` shows of it.
+//! The distances between borders: the merge tolerance `auto`, and the histogram that `info` shows.
 //!
-//! At three places of every border the distance to the nearest other border is measured. Gaps that the file
-//! means to be joints crowd at the bottom of the histogram, real openings at its top; between them is a
-//! valley. The tolerance lies in the widest valley (as a ratio) between the file's own resolution and
-//! [`LARGEST_GAP`] of the part, near its lower end.
+//! At three places of every border the distance to the nearest other border is measured. Gaps between faces
+//! that should be joined are at the lower end of the histogram, real openings at its upper end. Between them
+//! is a range without gaps. The tolerance lies in the widest such range (as a ratio of its ends) between the
+//! resolution of the file and [`LARGEST_GAP`] of the part, near its lower end.
 
 use crate::border::{Borders, edge_uses};
 use crate::foot::foot;
@@ -18,9 +18,10 @@ pub(crate) const LARGEST_GAP: f64 = 2e-3;
 /// The assumed accuracy of coordinates if the file states none, as a share of the diagonal: files with six
 /// digits.
 pub(crate) const RESOLUTION: f64 = 1e-6;
-/// A valley is clear where its upper end is so many times its lower one.
+/// A range without gaps is clear where its upper end is at least this multiple of its lower end. A smaller
+/// value would trust ranges that occur by chance.
 pub(crate) const CLEAR: f64 = 4.0;
-/// The tolerance lies so many times above the largest gap to be sewn: ends of edges are off by more than
+/// The tolerance is this multiple of the largest gap to be sewn, because ends of edges are further apart than
 /// their middles.
 const MARGIN: f64 = 3.0;
 
@@ -42,11 +43,11 @@ pub struct AutoTolerance {
     pub tolerance: f64,
     /// The accuracy that the file states, or that its coordinates are assumed to have.
     pub resolution: f64,
-    /// The valley between gaps to be sewn and real openings.
-    pub valley: [f64; 2],
-    /// The valley is wide enough to be trusted.
+    /// The range without gaps between the gaps to be sewn and real openings.
+    pub empty_range: [f64; 2],
+    /// Whether that range is wide enough to be trusted.
     pub clear: bool,
-    /// Gaps measured below the valley and above it.
+    /// The number of gaps below that range and above it.
     pub gaps: [usize; 2],
     /// The histogram, a bin for every power of ten that has gaps.
     pub histogram: Vec<GapBin>,
@@ -88,8 +89,7 @@ fn nearest_gaps(borders: &Borders) -> Vec<f64> {
 /// The distance of a border's point from the nearest other border.
 pub(crate) fn nearest_other(borders: &Borders, border: usize, t: f64) -> Option<f64> {
     let p = borders.all[border].curve.point(t);
-    // Chords of one border in a row are one valley: the curve is evaluated only where its chord is near
-    // enough.
+    // The curve is evaluated only where its chord is nearer than the best distance so far.
     let mut best = f64::INFINITY;
     borders.tree.nearest(p, f64::INFINITY, |chord| {
         let (b, k) = borders.chords[chord as usize];
@@ -118,7 +118,7 @@ pub(crate) fn choose(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64) -> A
     choose_below(gaps, uncertainty, diagonal, LARGEST_GAP * diagonal)
 }
 
-/// The same where gaps of more than `cap` are no joints.
+/// The tolerance from sorted gaps, where gaps larger than `cap` are openings.
 pub(crate) fn choose_below(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64, cap: f64) -> AutoTolerance {
     let resolution = uncertainty.filter(|u| *u > 0.0 && u.is_finite()).unwrap_or(RESOLUTION * diagonal);
     let resolution = resolution.min(cap / CLEAR).max(16.0 * f64::EPSILON * diagonal);
@@ -126,16 +126,17 @@ pub(crate) fn choose_below(gaps: &[f64], uncertainty: Option<f64>, diagonal: f64
     values.extend(gaps.iter().copied().filter(|&g| g > resolution && g < cap));
     values.push(gaps.iter().copied().find(|&g| g >= cap).map_or(cap, |g| g.min(cap * CLEAR)));
     let ratio = |w: &[f64]| w[1] / w[0];
-    // Of two that are alike the upper one: it sews more.
+    // Of two equally wide ranges the upper one: more is sewn.
     let widest = values.windows(2).map(ratio).fold(1.0, f64::max);
-    let valley = values.windows(2).rev().find(|w| ratio(w) >= widest * (1.0 - 1e-9)).unwrap_or(&values[..2]);
+    let empty_range =
+        values.windows(2).rev().find(|w| ratio(w) >= widest * (1.0 - 1e-9)).unwrap_or(&values[..2]);
     let clear = widest >= CLEAR;
-    let tolerance = if clear { valley[0] * widest.sqrt().min(MARGIN) } else { resolution };
+    let tolerance = if clear { empty_range[0] * widest.sqrt().min(MARGIN) } else { resolution };
     let below = gaps.partition_point(|&g| g <= tolerance);
     AutoTolerance {
         tolerance,
         resolution,
-        valley: [valley[0], valley[1]],
+        empty_range: [empty_range[0], empty_range[1]],
         clear,
         gaps: [below, gaps.len() - below],
         histogram: histogram(gaps, resolution),
@@ -163,7 +164,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_tolerance_lies_in_the_valley() {
+    fn the_tolerance_lies_in_the_empty_range() {
         let mut gaps: Vec<f64> = (0..90).map(|i| 1e-6 * f64::from(i)).collect();
         gaps.extend([0.5, 0.7, 3.0]);
         let found = choose(&gaps, None, 100.0);
@@ -178,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_valley_the_file_is_taken_at_its_word() {
+    fn without_an_empty_range_the_resolution_of_the_file_is_used() {
         let gaps: Vec<f64> = (0..60).map(|i| 1e-4 * math::powi(1.2, i)).collect();
         let found = choose(&gaps, Some(2e-4), 100.0);
         assert!(!found.clear);

@@ -1,23 +1,23 @@
 //! Sewing: loose trimmed surfaces become bodies whose faces share edges.
 //!
-//! Many formats have no topology, each face is an island. Before meshing, shared edges are inferred from the
-//! geometry of the edges that one face alone uses, so that the stages behind share vertices by identity as
-//! they do for solids:
+//! Many formats have no topology: faces share no edges. Before meshing, shared edges are inferred from the
+//! geometry of the edges that exactly one face uses, so that later stages share vertices by identity, as in
+//! solids:
 //!
 //! ```text
 //!   borders ([`border`])       edges with one use, as polylines in a tree; natural borders of bare faces
 //!   tolerance ([`gaps`])       `auto`: from the file's resolution and the histogram of nearest gaps
 //!   vertices ([`cluster`])     merged within the tolerance; none moves further than the tolerance
-//!   T-ends ([`cut`])           an edge is cut where a vertex of another one lies on it: overlaps, chains
+//!   T-junctions ([`cut`])      an edge is cut where a vertex of another edge lies on it: overlaps, chains
 //!   pieces ([`pair`])          pieces between the same vertices that run along each other become one edge
 //!   rebuild ([`rebuild`])      coedges of several faces refer to one edge
-//!   shells ([`shells`])        faces agree which way is out; what closes becomes a solid
+//!   shells ([`shells`])        faces get a common orientation; closed shells become solids
 //! ```
 //!
 //! Meshes that come without surfaces are sewn along their polygon borders: [`sew_mesh`].
 //!
-//! Edges that are used twice are never touched. The grid of the 2001 paper (Kahlesz, Balázs and Klein,
-//! section 8) is a tree here, because the sizes of edges in one file differ by many orders of magnitude.
+//! Edges with two uses are never changed. In place of the grid of the 2001 paper (Kahlesz, Balázs and Klein,
+//! section 8) there is a tree of boxes, because the sizes of edges in one file differ by orders of magnitude.
 
 #![deny(missing_docs)]
 

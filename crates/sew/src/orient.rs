@@ -1,21 +1,22 @@
-//! Which way faces face: along a common edge two faces of one shell run in opposite directions.
+//! The orientation of faces: along a common edge, the loops of two faces of one shell run in opposite
+//! directions.
 
 use crate::rebuild::Link;
 
-/// What orienting did.
+/// The result of orienting.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Oriented {
-    /// Per face, whether it must be turned over.
+    /// For each face, whether it must be turned over.
     pub turn: Vec<bool>,
-    /// Per face, the component of linked faces that it is in.
+    /// For each face, the component of linked faces that it belongs to.
     pub component: Vec<u32>,
     pub components: usize,
     /// Links whose faces still contradict each other (a Möbius band, loops that run the wrong way).
     pub contradictions: usize,
 }
 
-/// Walks from the lowest face of every component outwards; of two answers the one that turns fewer faces is
-/// taken.
+/// Walks outwards from the lowest face of every component. Of the two possible orientations the one that
+/// turns fewer faces is taken.
 pub(crate) fn orient(faces: usize, flipped: &[bool], links: &[Link]) -> Oriented {
     let mut of_face: Vec<Vec<u32>> = vec![Vec::new(); faces];
     for (k, link) in links.iter().enumerate() {

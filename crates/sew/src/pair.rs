@@ -1,8 +1,8 @@
 //! Pieces between the same two vertices that run along each other within the tolerance become one edge.
 //!
-//! Two are a pair. Where more meet, they are paired such that as few as possible stay alone, of one body
-//! before across bodies, the closer ones first, and never two faces that lie on each other. One that stays
-//! alone joins the edge of a pair (three faces at an edge).
+//! Two pieces are a pair. Where more meet, they are paired so that as few as possible remain: pieces of one
+//! body before pieces of two bodies, closer ones first, and never two faces that coincide. A piece that
+//! remains joins the edge of a pair (three faces at an edge).
 
 use crate::border::{Border, Borders};
 use crate::cut::{Piece, Pieces};
@@ -11,15 +11,16 @@ use chordal_brep::{FaceGeometry, Loop, Part};
 use chordal_nurbs::{Curve, DVec3, Range};
 use rayon::prelude::*;
 
-/// Distances that differ by less than this share of the tolerance are alike.
+/// Distances that differ by less than this share of the tolerance count as equal.
 const ALIKE: f64 = 0.02;
-/// All ways of pairing are compared for so many pieces; beyond, the best pair is taken first.
+/// Up to this many pieces all ways of pairing are compared; for more, the best pair is taken first, then the
+/// next.
 const ALL_WAYS: usize = 6;
-/// Two faces whose inward directions are this near (cosine) lie on each other.
+/// Two faces whose inward directions are this near (as a cosine) coincide.
 const ON_EACH_OTHER: f64 = 0.98;
-/// Faces are compared this share of a piece's length away from it.
+/// Faces are compared at this share of a piece's length away from the piece.
 const BESIDE: f64 = 0.05;
-/// And at least this many tolerances; pieces shorter than twice that give no direction.
+/// Faces are compared at least this many tolerances away. Pieces shorter than twice that give no direction.
 const FAR: f64 = 20.0;
 /// A face whose border runs along itself is a seam where the rest of it is longer than this many tolerances.
 const SEAM_REST: f64 = 8.0;
@@ -27,15 +28,15 @@ const SEAM_REST: f64 = 8.0;
 /// Pieces that become one edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Joint {
-    /// The piece whose curve is kept, then the others with whether they run against it and how far off they
-    /// are.
+    /// The piece whose curve is kept; then the others, each with whether it runs in the opposite direction,
+    /// and its distance.
     pub leader: u32,
     pub others: Vec<(u32, bool, f64)>,
-    /// Two faces that continue each other here; the rest only touches.
+    /// The two faces that continue each other at the edge; the others only touch it.
     pub pair: [u32; 2],
 }
 
-/// What pairing looks at.
+/// The input of pairing.
 pub(crate) struct Pairing<'a> {
     pub part: &'a Part,
     pub borders: &'a Borders,
@@ -168,7 +169,7 @@ impl Pairing<'_> {
         Some((largest, feet))
     }
 
-    /// True where a face that runs along itself does so because it is closed, not because it is thin.
+    /// True where a face that runs along itself does so because it is closed, not because it is narrow.
     fn is_seam(&self, a: u32, b: u32) -> bool {
         let (x, y) = (self.border(a), self.border(b));
         let face = &self.part.faces[x.of.face as usize];
@@ -193,8 +194,8 @@ impl Pairing<'_> {
         closed && (inner > enough || at_pole(ends[0]) || at_pole(ends[1]))
     }
 
-    /// True where two faces lie on each other beside the pieces: copies, or sides of bodies that touch. Sewn
-    /// to each other they would enclose nothing.
+    /// True where two faces coincide beside the pieces: copies, or sides of bodies that touch. Sewn to each
+    /// other they would enclose no volume.
     fn on_each_other(&self, a: u32, b: u32) -> bool {
         let (Some(x), Some(y)) = (self.inward(a), self.inward(b)) else { return false };
         if x.dot(y) <= ON_EACH_OTHER {
@@ -210,7 +211,7 @@ impl Pairing<'_> {
         let middle = border.curve.point(0.5 * (piece.range.start + piece.range.end));
         let share = piece.range.length() / border.range.length();
         let length = share * border.length;
-        // So far away that faces at an angle, however sharp, are apart by more than the tolerance.
+        // Far enough away that faces at any angle are further apart than the tolerance.
         let away = (BESIDE * length).max(FAR * self.tolerance);
         if away > 0.5 * length {
             return false;
@@ -239,8 +240,8 @@ impl Pairing<'_> {
         Joint { leader, others: vec![(other, c.reversed, c.distance)], pair: [a, b] }
     }
 
-    /// The smaller the better: how far the curve is off its own face where that matters, then how simple it
-    /// is.
+    /// A rank, of which the smallest is best: the distance of the curve from its own face where that is
+    /// relevant, then how simple the curve is.
     fn accuracy(&self, piece: u32, apart: f64) -> (u64, u32, u32) {
         let border = self.border(piece);
         let alike = ALIKE * self.tolerance;
@@ -273,7 +274,7 @@ impl Pairing<'_> {
         })
     }
 
-    /// Pieces that no pair was left for join the nearest pair that they run along.
+    /// Pieces without a partner join the nearest pair that they run along.
     fn add_lone_ones(
         &self,
         members: &[u32],

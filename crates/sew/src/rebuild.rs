@@ -1,4 +1,4 @@
-//! The part with its joints made: vertices merged, edges cut, coedges of several faces on one edge.
+//! Makes the sewn part: vertices merged, edges cut, coedges of several faces on one edge.
 
 use crate::border::Borders;
 use crate::cluster::{Clusters, Corner};
@@ -20,21 +20,21 @@ pub(crate) struct Link {
     pub same: bool,
 }
 
-/// Everything that was decided.
+/// The decisions of all stages before.
 pub(crate) struct Decisions<'a> {
     pub borders: &'a Borders,
     pub corners: &'a [Corner],
     pub clusters: &'a Clusters,
     pub pieces: &'a Pieces,
     pub joints: &'a [Joint],
-    /// Per piece: it vanishes into its vertex.
+    /// For each piece, whether it is merged into its vertex.
     pub vanished: &'a [bool],
     pub tolerance: f64,
-    /// Per face, loops that run the wrong way.
+    /// For each face, the loops that run in the wrong direction.
     pub wrong_loops: &'a [Vec<usize>],
 }
 
-/// A part with its joints made.
+/// A sewn part.
 #[derive(Debug, Default)]
 pub(crate) struct Rebuilt {
     pub part: Part,
@@ -50,7 +50,7 @@ struct Reference {
     leader: u32,
 }
 
-/// Makes the joints.
+/// Makes the sewn part.
 pub(crate) fn rebuild(part: &Part, decisions: &Decisions<'_>) -> Rebuilt {
     let vertices = VertexMap::new(part, decisions);
     let mut new =
@@ -122,7 +122,7 @@ fn links(decisions: &Decisions<'_>, references: &[Option<Reference>]) -> Vec<Lin
     decisions.joints.iter().map(link).collect()
 }
 
-/// Where the vertices went.
+/// The new vertex of each vertex.
 struct VertexMap {
     of: Vec<VertexId>,
     of_cluster: Vec<VertexId>,
@@ -132,7 +132,7 @@ struct VertexMap {
 impl VertexMap {
     fn new(part: &Part, decisions: &Decisions<'_>) -> Self {
         let Decisions { corners, clusters, .. } = *decisions;
-        // A cluster is the lowest of its vertices.
+        // A cluster takes the place of its lowest vertex.
         let mut stands_for: Vec<u32> = (0..part.vertices.len() as u32).collect();
         let mut target = vec![None; part.vertices.len()];
         for cluster in &clusters.all {
@@ -182,7 +182,7 @@ impl Faces<'_> {
         new
     }
 
-    /// A loop whose edges all vanish is gone.
+    /// A loop is dropped where all its edges vanish.
     fn one_loop(&self, a_loop: &Loop, surface: Option<&Surface>) -> Option<Loop> {
         match a_loop {
             Loop::Vertex(v) => Some(Loop::Vertex(self.vertices.of[v.index()])),

@@ -1,9 +1,9 @@
-//! What sewing did, in the part's own units.
+//! The result of sewing, in the part's own units.
 
 use crate::gaps::AutoTolerance;
 use chordal_brep::{EdgeId, FaceId, Source};
 
-/// An edge that one face alone still uses.
+/// An edge that exactly one face uses after sewing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenEdge {
     /// In the sewn part.
@@ -18,7 +18,7 @@ pub struct OpenEdge {
     pub nearest: Option<f64>,
 }
 
-/// What sewing did to one part; lengths in the part's own units.
+/// The result of sewing one part; lengths in the part's own units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SewReport {
     /// The merge tolerance.
@@ -29,11 +29,11 @@ pub struct SewReport {
     pub open_before: usize,
     /// Faces without loops that got their natural border as edges.
     pub natural: usize,
-    /// Edges that two pieces of borders, or more, became.
+    /// Edges that were made of two or more pieces of borders.
     pub sewn: usize,
-    /// Those of them with three faces or more.
+    /// The edges among these with three or more faces.
     pub shared_by_more: usize,
-    /// Places where an edge was cut at a T-end.
+    /// Places where an edge was cut at a T-junction.
     pub cuts: usize,
     /// Edges shorter than the tolerance that were merged into a vertex.
     pub vanished: usize,
@@ -45,11 +45,11 @@ pub struct SewReport {
     pub face_moves: Vec<f64>,
     /// Faces that were turned over to agree with their neighbours.
     pub turned: usize,
-    /// Pairs of faces that still run along their common edge the same way.
+    /// Pairs of faces whose loops still run along their common edge in the same direction.
     pub contradictions: usize,
-    /// Connected shells among the faces that were looked at.
+    /// Connected shells among the faces that could be sewn.
     pub shells: usize,
-    /// Those that are closed: each is a solid now, or a void of one.
+    /// The closed shells among these: each is now a solid, or a void of one.
     pub closed_shells: usize,
 }
 

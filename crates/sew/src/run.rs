@@ -17,7 +17,7 @@ use chordal_brep::{EdgeId, FaceId, Part};
 /// An edge may close into a ring where it is longer than this many tolerances.
 const RING: f64 = 4.0;
 
-/// How near borders must be to be sewn.
+/// The distance up to which borders are sewn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SewTolerance {
     /// From the file's resolution and the histogram of gaps.
@@ -32,13 +32,13 @@ pub fn has_topology(part: &Part) -> bool {
     edge_uses(part).iter().any(|uses| uses.len() > 1 && other_face(uses))
 }
 
-/// How many edges one face alone uses, once.
+/// The number of edges with exactly one use.
 pub fn open_edges(part: &Part) -> usize {
     let uses = edge_uses(part);
     part.edges.iter().zip(&uses).filter(|(edge, uses)| uses.len() == 1 && edge.curve.is_some()).count()
 }
 
-/// Infers the shared edges of a part. Where there is nothing to sew the part comes back as it is.
+/// Infers the shared edges of a part. A part with nothing to sew is returned unchanged.
 ///
 /// No vertex and no point of an edge moves by more than the tolerance; edges with two uses stay as they are.
 pub fn sew_part(part: &Part, tolerance: SewTolerance) -> (Part, SewReport) {
@@ -61,8 +61,8 @@ pub fn sew_part(part: &Part, tolerance: SewTolerance) -> (Part, SewReport) {
     }
     let sewing = Sewing { part: &given, uses: &uses, borders: &borders, tolerance: length };
     let mut best = sewing.attempt(&[]);
-    // Edges shorter than the tolerance that found no partner keep their neighbours' ends apart: let them
-    // vanish.
+    // Edges without a partner that are shorter than the tolerance keep the ends of their neighbours apart, so
+    // they are merged into vertices.
     let short = sewing.short_open(&best);
     if !short.is_empty() {
         let second = sewing.attempt(&short);
@@ -72,7 +72,7 @@ pub fn sew_part(part: &Part, tolerance: SewTolerance) -> (Part, SewReport) {
     }
     let (sewn, report) = sewing.finish(best);
     if report.sewn == 0 && report.closed_shells == 0 {
-        // Borders that meet nothing stay what they were.
+        // Borders without a partner are unchanged.
         return (
             part.clone(),
             SewReport { auto, open_before: report.open_before, open: report.open, ..none },
@@ -88,14 +88,14 @@ struct Sewing<'a> {
     tolerance: f64,
 }
 
-/// One way of sewing.
+/// One run over all stages.
 struct Attempt {
     corners: Vec<Corner>,
     clusters: Clusters,
     pieces: Pieces,
     joints: Vec<Joint>,
     vanished: Vec<bool>,
-    /// Per piece: it is in a joint.
+    /// For each piece, whether it is part of a joint.
     joined: Vec<bool>,
 }
 
@@ -248,7 +248,7 @@ impl Sewing<'_> {
         (0..self.uses.len()).filter(is_curve).filter_map(|e| pair(&self.uses[e])).collect()
     }
 
-    /// Per face, how far its border was moved at most.
+    /// For each face, the largest distance that its border was moved by.
     fn face_moves(&self, attempt: &Attempt) -> Vec<f64> {
         let mut moves = vec![0.0_f64; self.part.faces.len()];
         for (p, piece) in attempt.pieces.all.iter().enumerate() {

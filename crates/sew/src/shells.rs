@@ -1,4 +1,4 @@
-//! Connected shells of the faces that were sewn, and the bodies they make: what closes is a solid.
+//! Connected shells of the sewn faces, and the bodies that they make: a closed shell is a solid.
 
 use crate::flux::{volume, winding};
 use crate::orient::Oriented;
@@ -6,7 +6,7 @@ use crate::rebuild::Link;
 use chordal_brep::{Body, BodyKind, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source};
 use chordal_nurbs::{Box3, DVec3, Surface};
 
-/// What became of the shells.
+/// The result for the shells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Shells {
     pub shells: usize,
@@ -24,8 +24,7 @@ pub(crate) fn body_of_faces(part: &Part) -> Vec<u32> {
     body
 }
 
-/// Which faces belong to shells that have a border in them, or to none; faces of several shells are left
-/// alone.
+/// The faces that belong to shells with a border, or to no shell. Faces of several shells are not changed.
 pub(crate) fn affected(part: &Part, has_border: &[bool]) -> Vec<bool> {
     let mut uses = vec![0_u32; part.faces.len()];
     part.shells.iter().flat_map(|s| &s.faces).for_each(|f| uses[f.index()] += 1);
@@ -39,8 +38,7 @@ pub(crate) fn affected(part: &Part, has_border: &[bool]) -> Vec<bool> {
     affected
 }
 
-/// Replaces the shells of the affected faces by their connected components, and their bodies by what these
-/// make.
+/// Replaces the shells of the affected faces by their connected components, and the bodies accordingly.
 pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, links: &[Link]) -> Shells {
     let body_of = body_of_faces(part);
     let mut members: Vec<Vec<FaceId>> = vec![Vec::new(); oriented.components];
@@ -58,7 +56,7 @@ pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, l
     for (k, faces) in members.iter().enumerate() {
         let body = faces.iter().map(|f| body_of[f.index()]).min().expect("components have faces");
         bodies.push((body, k));
-        // A shell that the file calls closed stays called so if it is still in one piece.
+        // A shell that is closed in the file stays so if it is still in one piece.
         let whole = said_closed[faces[0].index()] == Some(faces.len());
         let source = shell_source[faces[0].index()];
         part.shells.push(Shell { faces: faces.clone(), closed: closed[k] || whole, source });
@@ -76,12 +74,12 @@ pub(crate) fn regroup(part: &mut Part, affected: &[bool], oriented: &Oriented, l
     found
 }
 
-/// A volume smaller than this share of what it is the sum of is lost in the quadrature; its sign is then
-/// taken from the mesh.
+/// A volume smaller than this share of the sum of its absolute parts is below the error of the quadrature;
+/// its sign is then taken from the mesh.
 const SURE: f64 = 1e-3;
 
-/// Turns over the new closed shells whose volume has the wrong sign: that of an outer one is positive, a
-/// void's negative.
+/// Turns over the new closed shells whose volume has the wrong sign. The volume of an outer shell is
+/// positive, that of a void negative.
 fn turn_outward(part: &mut Part, first_new: usize) {
     let mut wrong: Vec<FaceId> = Vec::new();
     for body in part.bodies.iter().filter(|b| b.kind == BodyKind::Solid) {
@@ -155,7 +153,7 @@ fn add_bodies(part: &mut Part, old: usize, shells: &[(ShellId, bool)]) {
         .collect();
     let open: Vec<ShellId> = shells.iter().filter(|s| !s.1).map(|s| s.0).collect();
     if !open.is_empty() {
-        // A solid that did not close stays what the file calls it.
+        // A solid that did not close keeps the kind that the file states.
         let kind = if new.is_empty() { template.kind } else { BodyKind::Sheet };
         new.push(Body { kind, shells: open, ..template.clone() });
     }
@@ -221,7 +219,7 @@ fn with_voids(part: &Part, closed: &[ShellId]) -> Vec<Vec<ShellId>> {
     let around: Vec<Vec<usize>> = (0..n).map(|i| (0..n).filter(|&o| within(i, o)).collect()).collect();
     let mut solids: Vec<Vec<ShellId>> = Vec::new();
     let mut place = vec![usize::MAX; n];
-    // In even depth lies material, in odd depth a void of the shell that is one less deep.
+    // At even depth is material, at odd depth a void of the shell one level up.
     for i in (0..n).filter(|&i| around[i].len().is_multiple_of(2)) {
         place[i] = solids.len();
         solids.push(vec![closed[i]]);

@@ -1,19 +1,19 @@
-//! The loops of a face in its parameter plane, and which of them run the wrong way.
+//! The loops of a face in its parameter plane, and which of them run in the wrong direction.
 
 use crate::border::Border;
 use chordal_brep::{Face, FaceGeometry, Loop, Part};
 use chordal_nurbs::{Curve, DVec2, Surface, SurfaceInverter};
 use rayon::prelude::*;
 
-/// Samples of an edge at least; more where its polyline has more.
+/// The fewest samples of an edge; more where its polyline has more.
 const SAMPLES: usize = 8;
 
 /// A loop in the parameter plane, the interior on its left seen along the surface's own normal.
 pub(crate) struct UvLoop {
-    /// Of the face's loops.
+    /// The index among the face's loops.
     pub index: usize,
     pub points: Vec<DVec2>,
-    /// Where the loop arrives after one turn, less where it began: whole periods, else zero.
+    /// The end of the loop after one turn minus its start: whole periods, or zero.
     pub winding: DVec2,
 }
 
@@ -80,15 +80,15 @@ impl UvLoop {
     }
 }
 
-/// Per face, the loops that run the same way as the one around them: meshing turns them round, so what they
-/// say of the direction of their neighbours is wrong. The outermost loop is taken as it is.
+/// For each face, the loops that run in the same direction as the loop around them. Meshing reverses them, so
+/// they show the wrong orientation of their neighbours. The outermost loop is taken as it is.
 pub(crate) fn wrong_loops(part: &Part) -> Vec<Vec<usize>> {
     part.faces.par_iter().with_min_len(64).map(|face| wrong_loops_of(part, face)).collect()
 }
 
 fn wrong_loops_of(part: &Part, face: &Face) -> Vec<usize> {
     let FaceGeometry::Surface(surface) = &face.geometry else { return Vec::new() };
-    // In a closed direction loops lie in turns of their own: which one is around which is not to be seen so.
+    // In a closed direction loops may lie in different periods, so nesting cannot be seen from their places.
     if face.loops.len() < 2 || surface.periods().iter().any(Option::is_some) {
         return Vec::new();
     }

@@ -170,7 +170,7 @@ fn a_sheet_rolled_into_a_tube_is_sewn_to_itself() {
 }
 
 #[test]
-fn auto_finds_the_valley() {
+fn auto_finds_the_empty_range() {
     let mut soup = Soup::default();
     for (i, side) in sides().into_iter().enumerate().take(5) {
         soup.grid(20 + i, 27 + 2 * i, false, |s, t| side(s, t).normalize());

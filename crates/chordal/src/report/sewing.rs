@@ -87,7 +87,7 @@ impl GapSurvey {
         Self {
             tolerance: auto.tolerance * scale,
             resolution: auto.resolution * scale,
-            empty_range: auto.valley.map(|g| g * scale),
+            empty_range: auto.empty_range.map(|g| g * scale),
             unambiguous: auto.clear,
             below: auto.gaps[0],
             above: auto.gaps[1],

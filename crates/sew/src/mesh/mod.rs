@@ -10,10 +10,10 @@
 //!   shells ([`shells`])          joined meshes get a common orientation
 //! ```
 //!
-//! Where the paper reparametrises a common border by its whole length, this does so between neighbouring
-//! correspondences: what one border wriggles more than the other does not add up, and no vertex moves by more
-//! than the tolerance. A pair that would break that is left out, and its edges stay open. In place of a grid
-//! there is a tree of boxes.
+//! The paper reparametrises a common border by its whole length. Here this is done between neighbouring
+//! correspondences: differences in length do not add up, and no vertex moves by more than the tolerance. A
+//! pair that would move a vertex further is left out, and its edges stay open. In place of a grid there is a
+//! tree of boxes.
 
 mod boundary;
 mod closest;
@@ -138,7 +138,7 @@ const CORNER: f64 = 0.85;
 /// wrong.
 const TYPICAL: f64 = 0.95;
 
-/// How far the chords of the borders stray from the curves that they stand for: a vertex lies four times as
+/// The distance of the chords of the borders from the curves that they approximate: a vertex is four times as
 /// far from the chord of its neighbours. Two meshes of one curve, with vertices at different places, cannot
 /// meet any better.
 fn chord_sag(boundaries: &Boundaries) -> f64 {
@@ -173,7 +173,7 @@ fn survey(boundaries: &Boundaries, resolution: Option<f64>) -> Option<AutoTolera
         return None;
     }
     gaps.sort_unstable_by(f64::total_cmp);
-    // The valley above what chords of this length make must be in sight.
+    // The range without gaps must lie above the distances that chords of this length cause.
     let cap = (LARGEST_GAP * box3.diagonal()).max(CLEAR * CLEAR * sag);
     Some(choose_below(&gaps, resolution, box3.diagonal(), cap))
 }

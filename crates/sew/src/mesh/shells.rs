@@ -1,4 +1,4 @@
-//! Connected shells of the joined mesh: triangles agree which way is out, and what stays open is measured.
+//! Connected shells of the joined mesh: triangles get a common orientation, and open borders are measured.
 
 use super::boundary::{Boundaries, Side, sorted_sides};
 use super::closest::nearest_by_border;
@@ -73,7 +73,7 @@ fn inconsistent(mesh: &SewnMesh) -> usize {
         .count()
 }
 
-/// The borders that are left, the longest first.
+/// The borders that stay open, the longest first.
 fn describe_open(mesh: &SewnMesh, report: &mut MeshSewReport) {
     let left = Boundaries::new(&mesh.positions, &mesh.triangles);
     report.open_after = left.edges();
