@@ -1,4 +1,4 @@
-//! Loops that cross in the chart: which chords are too coarse, and which loops cross in truth.
+//! Loops that cross in the chart: because chords are too coarse, or because the curves cross.
 //!
 //! ```text
 //!        ___c___                 Two chords cross. The curve over a–b bulges by β; where c lies within β of a–b, a finer a–b may
@@ -7,8 +7,8 @@
 //!           d
 //! ```
 //!
-//! The bulge is measured where it counts, on the surface: how far the surface over the middle of a chord's parameters is
-//! from the curve's middle, less what the edge lies off the surface at both ends.
+//! The bulge is measured where it counts, on the surface: how far the surface over the middle of a chord's
+//! parameters is from the curve's middle, less what the edge lies off the surface at both ends.
 //!
 //! Chords that touch along a line do not cross, but leave no area between them ([`shut_corners`]).
 
@@ -17,19 +17,19 @@ use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
 use chordal_nurbs::{DVec2, DVec3, orient};
 
-/// The curve may bulge more beside its middle.
+/// The largest bulge of a curve, as a multiple of the bulge at its middle.
 const BULGE_MARGIN: f64 = 2.0;
 
-/// Bulges below this share of the chord are straight lines and rounding.
+/// Bulges below this share of the chord are rounding: the curve is a straight line.
 const STRAIGHT: f64 = 1e-9;
 
 /// Loops with more points than this are not searched for crossings.
 const MAX_POINTS: usize = 50_000;
 
-/// The search for crossings ends at so many: the chords found are made finer first.
+/// The search for crossings ends at this number. The chords that were found are then made finer first.
 const MOST_PAIRS: usize = 20_000;
 
-/// The clock is looked at once in so many sides.
+/// The clock is read once for this many sides.
 const SIDES_PER_LOOK: usize = 64;
 
 /// One segment of a loop.
@@ -40,8 +40,9 @@ struct Side {
     bulge: f64,
 }
 
-/// The chords to split so that loops of the chart may cease to cross; empty where they cross in truth. `culprits` are chart
-/// points near a place where a triangulation failed, for loops that only touch. The search ends early where `is_out_of_time`.
+/// The chords to split so that loops of the chart may cease to cross; empty where they cross in truth.
+/// `culprits` are chart points near a place where a triangulation failed, for loops that only touch. The
+/// search ends early where `is_out_of_time`.
 pub fn coarse_chords(
     context: &TrimmedFace<'_, '_>,
     chart: &Chart,
@@ -71,8 +72,8 @@ pub fn coarse_chords(
     coarse
 }
 
-/// Chords at corners that they leave shut: both lie on one line and only their curves tell them apart. The triangle between two
-/// such has no area.
+/// Chords at corners where both lie on one line and only their curves differ. The triangle between two such
+/// chords has no area.
 ///
 /// ```text
 ///     __--b     Two curves leave p in one direction. Chords of equal direction are the longer the flatter their curves,
@@ -176,7 +177,7 @@ fn crossing_pairs(sides: &[Side], is_out_of_time: &dyn Fn() -> bool) -> Vec<(usi
     order.sort_unstable_by(|&i, &j| low(i).x.total_cmp(&low(j).x).then(i.cmp(&j)));
     let mut pairs = Vec::new();
     for (k, &i) in order.iter().enumerate() {
-        // What is found so far is enough to go on with.
+        // The crossings found so far suffice for this round.
         if pairs.len() > MOST_PAIRS || k % SIDES_PER_LOOK == 0 && is_out_of_time() {
             break;
         }

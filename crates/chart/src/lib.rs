@@ -1,13 +1,14 @@
 //! The loops of a trimmed face, as closed polygons in one chart of its surface's parameter plane.
 //!
 //! 1. Give each loop parameters, continued over seams and poles ([`TrimmedFace`]).
-//! 2. Close the loops to polygons in one chart: cut closed surfaces open, through holes where needed, nest the
-//!    polygons, and cut them along sharp creases of the surface ([`Chart`]).
-//! 3. Where polygons cross, find the chords that are too coarse ([`coarse_chords`], [`shut_corners`]), or that the
-//!    loops cross in truth ([`loops_cross`]); then give the part vertices there and loops that do not cross
-//!    ([`uncrossed`]).
+//! 2. Close the loops to polygons in one chart: cut closed surfaces open, through holes where needed, nest
+//!    the polygons, and cut them along sharp creases of the surface ([`Chart`]).
+//! 3. Where polygons cross, find the chords that are too coarse ([`coarse_chords`], [`shut_corners`]), or
+//!    that the loops cross in truth ([`loops_cross`]); then give the part vertices there and loops that do
+//!    not cross ([`uncrossed`]).
 //!
-//! The caller samples the edges ([`EdgeSamples`]) and says how finely cuts through a face are sampled ([`Seams`]).
+//! The caller samples the edges ([`EdgeSamples`]) and says how finely cuts through a face are sampled
+//! ([`Seams`]).
 
 #![deny(missing_docs)]
 

@@ -3,8 +3,8 @@
 use chordal_nurbs::{DVec2, SurfaceJet};
 use std::fmt::Debug;
 
-/// Lengths on a surface in a unit that grows where the surface is less curved, so that chords of equal length stay
-/// equally near to it.
+/// Lengths on a surface in a unit that grows where the surface is less curved, so that chords of equal length
+/// stay equally near to it.
 pub trait SeamMetric: Debug {
     /// The length of a small step of parameters at a place of the surface; 0 where the surface is singular.
     fn length(&self, jet: &SurfaceJet, step_uv: DVec2) -> f64;

@@ -1,9 +1,9 @@
-//! Heal parameters, part 1: the loops of a face as polygons in one chart of its parameter space.
+//! A face with its surface and its sampled edges, and the parameters of its loops.
 //!
-//! Elementary surfaces have closed-form inversion, so their pcurves are not needed. Elsewhere the file's pcurve is used where it
-//! agrees with the 3D curve, and the samples are projected where it does not. Along a loop parameters are continued
-//! by whole periods; where a loop passes through a pole, both sides' parameters are kept as two chart points of one
-//! vertex.
+//! Elementary surfaces have inversion in closed form, so their pcurves are not needed. On other surfaces, the
+//! pcurve of the file is used where it agrees with the curve in space; otherwise the samples are projected.
+//! Along a loop, parameters are continued by whole periods. Where a loop passes through a pole, the
+//! parameters on both sides of it are kept, as two chart points of one vertex.
 
 use crate::edge_samples::EdgeSamples;
 use crate::keys::{ChartPoint, Key, Segment};
@@ -17,7 +17,7 @@ pub(crate) struct OpenLoop {
     pub points: Vec<ChartPoint>,
     /// Periods by which the end lies beyond the start.
     pub winding: [i32; 2],
-    /// The file calls it the outer one.
+    /// Whether the file marks it as the outer loop.
     pub outer: bool,
 }
 
@@ -32,7 +32,7 @@ pub struct TrimmedFace<'a, 's> {
     pub surface: &'a FaceSurface<'s>,
     /// The samples of all edges of the part, by index.
     pub edges: &'a [EdgeSamples],
-    /// Loops of the face meet in vertices: each is one place in the chart.
+    /// Whether loops of the face meet in vertices. Each such vertex is one place in the chart.
     pub touching: bool,
     /// Points nearer together than this are the same point.
     pub resolution: f64,
@@ -109,7 +109,7 @@ impl TrimmedFace<'_, '_> {
             let found = place.uv;
             uv.push(found);
             let ahead = match (uv.as_slice(), xyz.get(i + 1)) {
-                // Straight on: nearer than the last point, most of the time.
+                // The next point is expected straight ahead.
                 (&[.., last, _], Some(next)) => {
                     let (run, step) = (p.distance(xyz[i - 1]), p.distance(*next));
                     let share = if run > 0.0 { (step / run).min(2.0) } else { 0.0 };
@@ -320,8 +320,9 @@ impl TrimmedFace<'_, '_> {
         Ok(Some(open))
     }
 
-    /// The whole periods to add behind a pole: the loop runs along the pole with the interior on its left, which is
-    /// against the parameter where it came from below and with it where it came from above. `before`: on the way there.
+    /// The whole periods to add behind a pole: the loop runs along the pole with the interior on its left,
+    /// which is against the parameter where it came from below and with it where it came from above.
+    /// `before`: on the way there.
     fn pole_shift(&self, before: DVec2, end: DVec2, start: DVec2) -> DVec2 {
         let Some((axis, upper)) = self.pole_side(before, end) else { return DVec2::ZERO };
         let along = 1 - axis;
@@ -345,7 +346,8 @@ impl TrimmedFace<'_, '_> {
         shift
     }
 
-    /// The pole line that a loop reaches at `end`, coming from `before`: (the pole's axis, whether the loop comes from below).
+    /// The pole line that a loop reaches at `end`, coming from `before`: (the pole's axis, whether the loop
+    /// comes from below).
     fn pole_side(&self, before: DVec2, end: DVec2) -> Option<(usize, bool)> {
         let off = |p: &chordal_nurbs::Pole| self.surface.offset_from(p.axis, p.value, end).abs();
         let pole = self.surface.poles.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;

@@ -1,25 +1,27 @@
-//! Heal loops that cross in truth: the model gets a vertex at each crossing, and faces get loops without crossings.
+//! Mends loops whose curves cross: the part gets a vertex at each crossing, and faces get loops without
+//! crossings.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 5.1. There the correction works on polylines of one face. Here it works on
-//! the part, so that edges keep their identity for the neighbours and everything behind this stage (every strategy, the
-//! audit) sees sound loops:
+//! Source: Balázs, Guthe, Klein 2004, section 5.1. There the correction works on polylines of one face. Here
+//! it works on the part, so that edges keep their identity for the neighbours, and all later stages get loops
+//! that do not cross:
 //!
 //! 1. [`hits`]: where chords of a face cross in its chart, carried over to the exact curves.
-//! 2. [`split`]: a vertex there, which both edges are cut at, for all their faces. Edges that now lie on each other between
-//!    the same two vertices become one: a face whose loop passes itself by 1e-7 loses two edges there, and its neighbours
-//!    meet along what is left.
+//! 2. [`split`]: both edges are cut there at a new vertex, for all their faces. Edges that coincide between
+//!    the same two vertices become one: where a loop overlaps itself by 1e-7, the face loses two edges, and
+//!    its neighbours meet along the edge that remains.
 //! 3. [`rebuild`]: the loops of the face from the boundary of the region that winding numbers describe
-//!    ([`chordal_brep::winding`]): inside are points that more outer loops than holes go round, each an odd number of times.
+//!    ([`chordal_brep::winding`]): inside are points that more outer loops than holes go round, each an odd
+//!    number of times.
 //!
 //! ```text
-//!        ___________            ____   ____          Vertices where the strands cross. Between them both strands are
+//!        ___________            ____   ____          Vertices where the strands cross. Between them, both strands are
 //!    ___/___     ___\___   →   /    \ /    \         one edge where they lie within the resolution of each other; else
 //!       \   \___/   /          \____/ \____/         the stretch between them is no part of the face, or a hole in it.
 //!        \_________/
 //! ```
 //!
-//! Not guaranteed: a face of a closed shell whose region would leave a neighbour's edge open, or run it the other way
-//! round (a bow tie of shared edges), stays as it is in the file, and is reported as not proven.
+//! Not guaranteed: a face of a closed shell whose region would leave a neighbour's edge open, or run it the
+//! other way round (a bow tie of shared edges), stays as it is in the file, and is reported as not proven.
 
 mod hits;
 mod rebuild;
@@ -51,11 +53,12 @@ pub struct Uncrossed {
     pub part: Part,
     /// Per face with new loops: how many crossings it had.
     pub faces: Vec<(usize, usize)>,
-    /// Faces whose loops run to and fro and bound no region.
+    /// Faces whose loops run back along themselves and bound no region.
     pub flat: BTreeSet<usize>,
 }
 
-/// The edges that two faces of a closed shell share: there the shell stays closed only where both keep them, as they run.
+/// The edges that two faces of a closed shell share. The shell stays closed only if both faces keep these
+/// edges, in the same direction.
 fn guarded(part: &Part) -> BTreeSet<EdgeId> {
     let mut guarded = BTreeSet::new();
     for shell in part.shells.iter().filter(|shell| shell.closed) {
@@ -86,8 +89,8 @@ struct Meeting {
     vertex: Option<VertexId>,
 }
 
-/// The part with the loops of these faces made anew; `None` where nothing was to be done. Points nearer together than
-/// `resolution` are one, and crossings of curves that stay further apart than `tolerance` are none.
+/// The part with new loops for these faces; `None` where no loop changes. Points nearer together than
+/// `resolution` are one point. Curves that stay further apart than `tolerance` do not cross.
 pub fn uncrossed(
     part: &Part,
     crossed: &[Crossed<'_, '_>],

@@ -1,4 +1,4 @@
-//! Heal parameters, part 2: closed polygons in one chart.
+//! The loops of a face closed to polygons in one chart.
 //!
 //! ```text
 //!   two loops wind round            one winds round a pole           none: the whole surface
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The two sides of a seam have the same vertices, one period apart in the chart; all points of a pole line
-//! are one vertex. The outer loop is found by area, not by what the file calls it.
+//! are one vertex. The outer loop is the one with the largest area, whatever the file states.
 
 mod crease;
 mod cuts;
@@ -35,22 +35,23 @@ pub struct Chart {
     pub loops: Vec<(u32, u32)>,
     /// Positions of the vertices with `Key::Private`.
     pub private: Vec<DVec3>,
-    /// The outer loop ran the other way in the file: it or the sense flag is wrong, or the loop folds over
-    /// itself. Triangles follow the loop until the neighbours are known.
+    /// The outer loop runs in the other direction in the file: it or the sense flag is wrong, or the loop
+    /// overlaps itself. Triangles follow the loop until the orientation of the neighbours is known.
     pub reversed: bool,
-    /// Where points inside belong.
+    /// Points inside the face are placed on this grid.
     pub grid: Grid,
 }
 
-/// The places of one vertex in a chart are one where they lie nearer together than this share of the chart: the
-/// two sides of a seam are further apart.
+/// The places of one vertex in a chart are one where they lie nearer together than this share of the chart:
+/// the two sides of a seam are further apart.
 const SAME_VERTEX: f64 = 1e-2;
 
 /// A chord of a seam is halved at most this often.
 const SEAM_DEPTH: usize = 12;
 
 impl Chart {
-    /// Unrolls the face; cuts through it are sampled as `seams` says. `creased`: cut along its surface's creases.
+    /// Unrolls the face; cuts through it are sampled as `seams` says. `creased`: cut along its surface's
+    /// creases.
     ///
     /// # Errors
     /// Where the loops bound no region.
@@ -59,7 +60,7 @@ impl Chart {
         let mut unroll = Unroll { context, seams, lone, private: Vec::new(), reversed: false };
         let (winding, mut plain): (Vec<_>, Vec<_>) = loops.into_iter().partition(|l| l.winding != [0, 0]);
         plain.retain(|l| encloses_area(l, context.surface.periods));
-        // Loops that enclose nothing bound nothing: least of all the whole surface.
+        // Loops without area bound no face; the face is not the whole surface then.
         if winding.is_empty() && plain.is_empty() && context.is_trimmed() {
             return Ok(Self::default());
         }
@@ -135,8 +136,8 @@ impl Unroll<'_, '_> {
         Key::Private(self.private.len() as u32 - 1)
     }
 
-    /// A vertex that loops pass more than once has one place in the chart, so that they touch there and do not
-    /// cross.
+    /// A vertex that loops pass more than once has one place in the chart, so that they touch there and do
+    /// not cross.
     fn join_vertices(&self, polygons: &mut [Vec<ChartPoint>]) {
         let extent = UvBox::from_points(polygons.iter().flatten().map(|p| p.uv)).size();
         let surface = self.context.surface;
@@ -161,8 +162,8 @@ impl Unroll<'_, '_> {
         }
     }
 
-    /// Points strictly between two chart points, as many as the metric asks for, and more where a chord
-    /// strays further from the surface than its curvature at a few places promised.
+    /// Points strictly between two chart points, as many as the metric requires, and more where a chord is
+    /// further from the surface than its curvature at the probes suggests.
     pub fn between(&self, from: DVec2, to: DVec2) -> Vec<DVec2> {
         // Free surfaces may bend many times along a seam.
         let probes = if self.context.surface.is_elementary() { 16 } else { 96 };
@@ -223,7 +224,7 @@ impl Unroll<'_, '_> {
         }
     }
 
-    /// Gives every pole line chart points to fan from, one for each neighbour that needs one.
+    /// Gives every pole line as many chart points as a fan of triangles around the pole needs.
     fn subdivided_poles(&self, polygon: Vec<ChartPoint>, grid: &Grid) -> Vec<ChartPoint> {
         if polygon.iter().all(|p| p.segment != Segment::Pole) {
             return polygon;
@@ -246,8 +247,8 @@ impl Unroll<'_, '_> {
         fine
     }
 
-    /// As many as chords fit round the surface half way to the middle of its domain, or of the face where
-    /// that is unbounded.
+    /// The number of chords around the surface half way between the pole and the middle of the domain, or of
+    /// the face where the domain is unbounded.
     fn pole_points(&self, from: DVec2, to: DVec2, inside: DVec2) -> usize {
         let along = usize::from((to - from).x == 0.0);
         let across = 1 - along;
@@ -260,8 +261,7 @@ impl Unroll<'_, '_> {
         (rate / self.seams.chord).ceil().clamp(2.0, 256.0) as usize
     }
 
-    /// True for a surface without any boundary of its own whose loops are all holes, and for a face without
-    /// loops.
+    /// True for a face without loops, and for a surface without boundary where all loops are holes.
     fn needs_natural_boundary(&self, plain: &[OpenLoop]) -> bool {
         let Some(largest) =
             plain.iter().max_by(|a, b| area(&a.points).abs().total_cmp(&area(&b.points).abs()))
@@ -338,7 +338,7 @@ impl Unroll<'_, '_> {
         Ok(polygon)
     }
 
-    /// The whole surface, where no straight cut across the closed direction `axis` keeps clear of its holes:
+    /// The whole surface, where every straight cut across the closed direction `axis` meets a hole:
     /// a cut through them, from pole to pole or from one side of a straight cut along that direction to the
     /// other. `None` on surfaces that end otherwise.
     fn cut_through_holes(
@@ -445,9 +445,9 @@ impl Unroll<'_, '_> {
             inside.push(by.is_some());
             holes.push(open);
         }
-        // What the file runs as a hole is one, even where coarse chords put it across the outer loop: finer
-        // ones will not. What it runs as an outer loop is one outside the outer loop, another piece of the
-        // face, and inside a hole: an island.
+        // A loop that runs as a hole in the file is a hole, also where coarse chords make it cross the outer
+        // loop: finer chords will not. A loop that runs as an outer loop is another piece of the face where
+        // it lies outside the outer loop, or inside a hole (an island).
         let wrong: Vec<bool> = (0..holes.len())
             .map(|i| area(&holes[i].points) > 0.0 && inside[i] && holes_around(&holes, i).is_multiple_of(2))
             .collect();
@@ -464,7 +464,7 @@ impl Unroll<'_, '_> {
             (UvBox::from_points(outer.iter().map(|p| p.uv)), UvBox::from_points(hole.iter().map(|p| p.uv)));
         let steps = |axis: usize| match self.context.surface.periods[axis] {
             Some(period) => {
-                // Near turns first; a cut through holes may lead the outer loop some turns away.
+                // Near periods first. A cut through holes may move the outer loop by several periods.
                 let far = |d: f64| (d.abs() / period).ceil().clamp(2.0, MOST_TURNS);
                 let most = far(to.min[axis] - from.max[axis]).max(far(to.max[axis] - from.min[axis]));
                 let turns = (1..=most as i32).flat_map(|k| [f64::from(k), f64::from(-k)]);
@@ -485,14 +485,14 @@ impl Unroll<'_, '_> {
     }
 }
 
-/// An outer loop that goes round more often than this is not searched for where a hole lies in it.
+/// The most periods by which a hole is moved to find its place in the outer loop.
 const MOST_TURNS: f64 = 64.0;
 
-/// False where a loop runs back over itself, vertex by vertex, until nothing is left: two points, or an edge
-/// and back.
+/// False where a loop runs back over itself, vertex by vertex, such as two points, or an edge and the same
+/// edge back.
 fn encloses_area(open: &OpenLoop, periods: [Option<f64>; 2]) -> bool {
     let mut left: Vec<&ChartPoint> = Vec::with_capacity(open.points.len());
-    // The two sides of a seam have the same vertices, a turn apart.
+    // The two sides of a seam have the same vertices, one period apart.
     let same = |a: &ChartPoint, b: &ChartPoint| {
         let turned = |k: usize| periods[k].is_some_and(|p| (a.uv[k] - b.uv[k]).abs() > 0.5 * p);
         a.key == b.key && !turned(0) && !turned(1)
@@ -512,7 +512,7 @@ fn encloses_area(open: &OpenLoop, periods: [Option<f64>; 2]) -> bool {
     ends.len() > 2
 }
 
-/// In how many of the other loops a loop lies as a whole.
+/// The number of other loops that a loop lies inside of as a whole.
 fn holes_around(loops: &[OpenLoop], i: usize) -> usize {
     let own = &loops[i].points;
     let around = |other: &&OpenLoop| {

@@ -8,8 +8,8 @@ use chordal_brep::{Coedge, EdgeId, Loop, Part, Pcurve, VertexId};
 use chordal_nurbs::{DVec2, Range};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Chart points of one vertex nearer together than this share of the chart are one; the two sides of a seam are further
-/// apart.
+/// Chart points of one vertex nearer together than this share of the chart are one; the two sides of a seam
+/// are further apart.
 const ONE_PLACE: f64 = 1e-2;
 
 /// Places this many times nearer together than those of one vertex are one.
@@ -23,7 +23,7 @@ struct Run {
     polygon: u32,
 }
 
-/// The face's loops without crossings, none where it has no area; `None` where they cannot be made.
+/// The loops of the face without crossings, empty where it has no area; `None` where they cannot be made.
 pub(super) fn loops(
     crossed: &Crossed<'_, '_>,
     part: &Part,
@@ -112,7 +112,7 @@ pub(super) fn loops(
         }
     }
     new.extend(closed(open, part)?.into_iter().map(|coedges| (coedges, true)));
-    // The chart sees the surface; the file's loops run as its faces do.
+    // Loops of the chart are oriented by the surface, loops of the part by the face.
     let backwards = !face.same_sense ^ chart.reversed;
     let mut loops: Vec<Loop> =
         new.into_iter().map(|(one, outer)| finished(crossed, part, one, outer, backwards)).collect();
@@ -127,7 +127,7 @@ fn runs(crossed: &Crossed<'_, '_>, pieces: &Pieces) -> Option<Vec<Run>> {
     for (l, &(start, end)) in chart.loops.iter().enumerate() {
         let mut of_loop: Vec<Run> = Vec::new();
         let points = &chart.points[start as usize..end as usize];
-        // Begin at a vertex of the part, so that no run goes on at the polygon's end.
+        // Begin at a vertex of the part, so that no run continues over the end of the polygon.
         let first = points.iter().position(|p| matches!(p.key, Key::Vertex(_)))?;
         for i in 0..points.len() {
             let a = &points[(first + i) % points.len()];
@@ -145,8 +145,8 @@ fn runs(crossed: &Crossed<'_, '_>, pieces: &Pieces) -> Option<Vec<Run>> {
     Some(runs)
 }
 
-/// The piece of an edge that a stretch runs along, forwards or backwards, and the ends of the stretch; no piece for
-/// cuts through the surface.
+/// The piece of an edge that a stretch runs along, forwards or backwards, and the ends of the stretch; no
+/// piece for cuts through the surface.
 type Stretch = (Option<(EdgeId, bool)>, [DVec2; 2]);
 
 /// One side of a polygon, cut where its edge is: the pieces it runs along, and from where to where.
@@ -195,7 +195,7 @@ fn runs_forward(crossed: &Crossed<'_, '_>, edge: u32, chord: u32, a: &ChartPoint
 
 /// Where strands meet: a vertex, at one place of the chart.
 struct Nodes {
-    /// Beyond this distance along each axis two places are two.
+    /// Places further apart than this along an axis are different.
     near: DVec2,
     of_vertex: BTreeMap<u32, Vec<u32>>,
     of_place: BTreeMap<[u64; 2], u32>,
@@ -214,7 +214,7 @@ impl Nodes {
         }
     }
 
-    /// True for a place that is not the node's own.
+    /// True for a place that is not the place of the node.
     fn is_apart(&self, node: u32, uv: DVec2) -> bool {
         let d = (self.points[node as usize] - uv).abs() * SAME_PLACE;
         d.x > self.near.x || d.y > self.near.y
@@ -257,7 +257,7 @@ fn area(points: impl Iterator<Item = DVec2>) -> f64 {
     (0..n).map(|i| 0.5 * (points[i] - origin).perp_dot(points[(i + 1) % n] - origin)).sum()
 }
 
-/// The points of a strand in its direction, the last one left out.
+/// The points of a strand in a direction, without the last.
 fn along(strand: &Strand, forward: bool) -> Vec<DVec2> {
     let mut points = strand.points.clone();
     if !forward {
@@ -267,7 +267,7 @@ fn along(strand: &Strand, forward: bool) -> Vec<DVec2> {
     points
 }
 
-/// Closes chains that cuts through the surface have interrupted, by their vertices.
+/// Joins chains that were interrupted by cuts through the surface, at their common vertices.
 fn closed(mut open: Vec<Vec<(EdgeId, bool)>>, part: &Part) -> Option<Vec<Vec<(EdgeId, bool)>>> {
     let start = |&(id, forward): &(EdgeId, bool)| {
         let edge = &part.edges[id.index()];

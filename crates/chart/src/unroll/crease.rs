@@ -1,22 +1,24 @@
-//! Cuts along creases: lines of parameter space at which the surface is bent sharply become sides of the polygons.
+//! Cuts along creases: lines of parameter space at which the surface is bent sharply become sides of the
+//! polygons.
 //!
 //! ```text
 //!   ┌───────┬──────┐        ┌───────┐ ┌──────┐       Both sides of the cut have the same vertices, as those of a
-//!   │   ┌───┼──┐   │        │   ┌───┘ └──┐   │       seam have; each is moved a hair to its own side, so that whatever
-//!   │   └───┼──┘   │   →    │   └───┐ ┌──┘   │       is asked of the surface there is answered for that side.
+//!   │   ┌───┼──┐   │        │   ┌───┘ └──┐   │       seam have; each is moved a little to its own side, so that the
+//!   │   └───┼──┘   │   →    │   └───┐ ┌──┘   │       surface is evaluated on that side of the crease.
 //!   └───────┴──────┘        └───────┘ └──────┘
 //! ```
 //!
-//! The polygons are walked anew: the pieces of boundary on one side of the line and, between two places where the
-//! boundary meets the line with the face in between, the line itself. Where several pieces leave one point, the walk takes
-//! the one that keeps to the interior on its left.
+//! New polygons are walked on each side of the line: along the pieces of boundary on that side and, between
+//! two places where the boundary meets the line with the face in between, along the line. Where several
+//! pieces leave one point, the walk takes the piece that keeps the interior on the left.
 
 use super::Unroll;
 use crate::keys::{ChartPoint, Key, Segment};
 use chordal_nurbs::{DVec2, UvBox, math};
 use std::collections::BTreeMap;
 
-/// Points this share of the face away from the line may be put on it, where that moves them by less than the resolution.
+/// Points nearer to the line than this share of the face are moved onto it, where that moves them by less
+/// than the resolution.
 const NEAR: f64 = 1e-3;
 
 /// Polygons with more cuts than this are left as they are.
@@ -52,7 +54,7 @@ struct Step {
 }
 
 impl Unroll<'_, '_> {
-    /// Cuts the face at every crease of its surface that it reaches over.
+    /// Cuts the face at every crease of its surface that lies inside it.
     pub fn cut_at_creases(&mut self, mut polygons: Vec<Vec<ChartPoint>>) -> Vec<Vec<ChartPoint>> {
         let surface = self.context.surface;
         let extent = UvBox::from_points(polygons.iter().flatten().map(|p| p.uv));
@@ -67,7 +69,8 @@ impl Unroll<'_, '_> {
         polygons
     }
 
-    /// Cuts the polygons along one line; leaves them as they are where an edge crosses it between two samples.
+    /// Cuts the polygons along one line. They are unchanged where an edge crosses the line between two
+    /// samples.
     fn cut_along(
         &mut self,
         line: Line,
@@ -106,7 +109,7 @@ impl Unroll<'_, '_> {
         cutter.walk(aside)
     }
 
-    /// On the line where the point lies nearly on it.
+    /// The point, moved onto the line where it is nearly on it.
     fn snapped(&self, line: Line, point: &ChartPoint, near: f64) -> ChartPoint {
         let mut on = point.uv;
         on[line.axis] = line.value;
@@ -145,7 +148,8 @@ impl Unroll<'_, '_> {
         points
     }
 
-    /// Points strictly between two places on the crease, as many as the more curved of its sides asks for.
+    /// Points strictly between two places on the crease, as many as the more curved of its two sides
+    /// requires.
     fn along_crease(&mut self, line: Line, from: DVec2, to: DVec2) -> Vec<(Key, DVec2)> {
         let aside = self.context.surface.surface.beside_crease(line.axis, line.value);
         let sides = [-aside, aside].map(|by| {
@@ -186,7 +190,7 @@ fn lines_within(creases: &[f64], period: Option<f64>, extent: UvBox, axis: usize
     lines
 }
 
-/// A face that ends at a line lies on one side of it: what lies on the line is moved a hair to that side.
+/// A face that ends at a line lies on one side of it: points on the line are moved a little to that side.
 fn beside(line: Line, mut polygons: Vec<Vec<ChartPoint>>, aside: f64) -> Vec<Vec<ChartPoint>> {
     for point in polygons.iter_mut().flatten().filter(|p| line.off(p.uv) == 0.0) {
         point.uv[line.axis] += aside;
@@ -235,7 +239,8 @@ impl Cutter {
         Self { line, points, boundary, cuts: Vec::new() }
     }
 
-    /// Pairs of neighbouring points on the line between which the line lies inside the face, in its direction.
+    /// Pairs of neighbouring points on the line between which the line lies inside the face, in its
+    /// direction.
     fn inner_intervals(&self) -> Vec<(usize, usize)> {
         let Line { axis, value } = self.line;
         let along = |i: usize| self.line.along(self.points[i].uv);
@@ -330,7 +335,8 @@ impl Cutter {
         polygons
     }
 
-    /// The angle clockwise from the way back to the next step: the smallest keeps to the interior on the left.
+    /// The angle clockwise from the way back to the next step: the smallest keeps to the interior on the
+    /// left.
     fn turn(&self, step: &Step, next: &Step) -> f64 {
         let at = |i: usize| self.points[i].uv;
         let (back, ahead) = (at(step.from) - at(step.to), at(next.to) - at(next.from));

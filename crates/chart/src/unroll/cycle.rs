@@ -1,4 +1,5 @@
-//! A surface that is closed both ways, with holes in the way of every straight cut: two cuts through holes.
+//! A surface that is closed in both directions, where every straight cut meets a hole: two cuts through
+//! holes.
 //!
 //! ```text
 //!       │ cut
@@ -56,7 +57,7 @@ impl Unroll<'_, '_> {
     ) -> Vec<OpenLoop> {
         let (first, last) = (hops[0].from, hops[hops.len() - 1].to);
         let n = root.points.len();
-        // What leads from the root to where the cut arrives.
+        // The vector from the root to the end of the cut.
         let by = last.uv - root.points[last.index].uv;
         let around = |by: DVec2| (by - step).x / self.context.surface.periods[0].unwrap_or(1.0);
         let turns = around(by).round() as i32;

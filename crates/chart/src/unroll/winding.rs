@@ -10,7 +10,7 @@ use crate::trimmed_face::OpenLoop;
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{DVec2, math};
 
-/// So many of the shortest straight cuts are tried before the cut is led through holes.
+/// The number of shortest straight cuts that are tried before a cut through holes.
 const STRAIGHT_CUTS: usize = 2000;
 
 impl Unroll<'_, '_> {
@@ -38,7 +38,8 @@ impl Unroll<'_, '_> {
                 let value = match self.pole_beyond(across, value, is_lower(&a)) {
                     Some(value) => value,
                     None => {
-                        // Nothing closes it on the side it claims: the file has it the wrong way round.
+                        // The face is unbounded on the side that the loop states: its direction is wrong in
+                        // the file.
                         a.reverse();
                         self.reversed = true;
                         self.pole_beyond(across, value, is_lower(&a)).ok_or(MeshIssue::UnboundedFace)?
@@ -65,7 +66,7 @@ impl Unroll<'_, '_> {
         }
     }
 
-    /// The first pole line above or below a value, in whichever turn of a closed direction.
+    /// The first pole line above or below a value, in any period of a closed direction.
     fn pole_beyond(&self, axis: usize, value: f64, upper: bool) -> Option<f64> {
         let surface = self.context.surface;
         let poles = surface.poles.iter().filter(|p| p.axis == axis).map(|p| p.value);
@@ -129,7 +130,7 @@ impl Unroll<'_, '_> {
                 let by = mean(&a.points, across) + gap - mean(&b.points, across);
                 b.points = shifted(&b.points, along_axis(across, by));
             }
-            // On an open surface the values tell which is lower, whatever the file says.
+            // On an open surface the parameters decide which loop is lower, whatever the file states.
             None if mean(&a.points, across) > mean(&b.points, across) => std::mem::swap(&mut a, &mut b),
             None => {}
         }
