@@ -7,7 +7,9 @@ mod values;
 
 pub use accuracy::AccuracyArgs;
 pub use mesh::{EvaluateArg, MeshArgs};
-pub use others::{BenchArgs, CheckArgs, CompareArgs, CompletionsArgs, ConvertArgs, InfoArgs, SewArgs};
+pub use others::{
+    BenchArgs, CheckArgs, CompareArgs, CompletionsArgs, ConvertArgs, InfoArgs, ReproArgs, SewArgs,
+};
 pub use values::FormatArg;
 
 use crate::render_args::RenderArgs;
@@ -43,6 +45,11 @@ pub enum Command {
     Check(CheckArgs),
     /// Write the exact model of a CAD file as Chordal's own JSON, without loss.
     Convert(ConvertArgs),
+    /// Write the smallest piece of a model that shows the problem of a face, to be sent with a report.
+    ///
+    /// The piece has no names and nothing of the file's header: the surface, loops and edges of the face, and those
+    /// of its neighbours where the problem needs them. It is meshed again before it is written.
+    Repro(ReproArgs),
     /// Draw a picture of a model, as PNG.
     ///
     /// Needs a build with the feature `gpu`, and a Vulkan device or Mesa's software device.

@@ -20,6 +20,7 @@ mod progress;
 mod reading;
 mod render;
 mod render_args;
+mod repro;
 mod sew;
 mod tree;
 mod whole_file;
@@ -57,6 +58,7 @@ fn run() -> Exit {
         Command::Check(args) => check::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Convert(args) => convert::run(&args),
+        Command::Repro(args) => repro::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Completions(args) => {

@@ -7,6 +7,7 @@
 #![deny(missing_docs)]
 
 mod assembly;
+mod excerpt;
 mod ids;
 pub mod issue;
 mod part;

@@ -28,15 +28,16 @@ impl Part {
     }
 }
 
-/// The copies that one face has: old id to new.
+/// The copies that faces have: old id to new.
 #[derive(Debug, Default)]
-struct Island {
+pub(crate) struct Island {
     vertices: BTreeMap<VertexId, VertexId>,
     edges: BTreeMap<EdgeId, EdgeId>,
 }
 
 impl Island {
-    fn boundary(&mut self, boundary: &Loop, from: &Part, to: &mut Part) -> Loop {
+    /// A loop over copies of its edges and vertices.
+    pub(crate) fn boundary(&mut self, boundary: &Loop, from: &Part, to: &mut Part) -> Loop {
         let mut copy = boundary.clone();
         match &mut copy {
             Loop::Edges { coedges, .. } => {

@@ -69,6 +69,12 @@ pub enum RequestError {
         /// Why.
         source: WriteError,
     },
+    /// The model has no such face.
+    #[error("the model has no face {face}")]
+    UnknownFace {
+        /// The face.
+        face: crate::repro::FaceName,
+    },
     /// The build lacks a feature.
     #[error("this build of Chordal lacks the feature `{feature}`")]
     MissingFeature {

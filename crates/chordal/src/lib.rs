@@ -70,6 +70,7 @@ mod quantity;
 #[cfg(feature = "gpu")]
 mod render;
 pub mod report;
+pub mod repro;
 mod resolve;
 mod scene;
 mod sewing;

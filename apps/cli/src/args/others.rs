@@ -3,6 +3,7 @@
 use super::AccuracyArgs;
 use super::values::{FormatArg, input_formats, strategies};
 use chordal::methods::StrategyEntry;
+use chordal::repro::FaceName;
 use chordal::{InputFormat, Sewing, Unit};
 use clap::Args;
 use std::path::PathBuf;
@@ -95,6 +96,24 @@ pub struct ConvertArgs {
     /// The format of the input [default: recognised by content].
     #[arg(long, value_name = "FORMAT", value_parser = input_formats())]
     pub input_format: Option<InputFormat>,
+    /// Print a summary to standard output as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ReproArgs {
+    /// A CAD file, or `-` for standard input.
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// The face: #123, the number of its entity, or @5, its place in `faces_detail` of the report.
+    #[arg(long, value_name = "ID")]
+    pub face: FaceName,
+    /// The file to write; its name ends in .json. `-` is standard output.
+    #[arg(short, long, value_name = "OUT.json")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
     /// Print a summary to standard output as JSON.
     #[arg(long)]
     pub json: bool,
