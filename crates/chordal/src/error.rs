@@ -72,8 +72,8 @@ pub enum RequestError {
     /// The model has no such face.
     #[error("the model has no face {face}")]
     UnknownFace {
-        /// The face.
-        face: crate::repro::FaceName,
+        /// The face, as `#123` or by its place in the report.
+        face: String,
     },
     /// The build lacks a feature.
     #[error("this build of Chordal lacks the feature `{feature}`")]

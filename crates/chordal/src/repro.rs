@@ -173,7 +173,7 @@ fn find(model: &Model, name: FaceName) -> Result<(PartId, FaceId), Error> {
         FaceName::Entity(entity) => faces.find(|(.., face)| face.source.entity == entity),
         FaceName::Index(index) => faces.nth(index),
     };
-    let (part, face, _) = found.ok_or(RequestError::UnknownFace { face: name })?;
+    let (part, face, _) = found.ok_or(RequestError::UnknownFace { face: name.to_string() })?;
     Ok((PartId::from(part), FaceId::from(face)))
 }
 
