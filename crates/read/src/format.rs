@@ -40,6 +40,17 @@ impl Format {
         })
     }
 
+    /// Whether content of this format is text that may be brought into another encoding as a whole. IGES counts the
+    /// bytes of its strings, and decodes each of them.
+    pub(crate) fn is_text(self, bytes: &[u8]) -> bool {
+        let head = &bytes[..bytes.len().min(64)];
+        match self {
+            Format::Step | Format::Obj | Format::X3d => true,
+            Format::Inventor => !head.windows(6).any(|word| word == b"binary"),
+            _ => false,
+        }
+    }
+
     /// Whether files of this format leave open which trimming loops are holes, so that
     /// [`crate::ReadOptions::winding`] decides.
     pub fn has_winding(self) -> bool {

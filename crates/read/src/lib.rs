@@ -35,6 +35,7 @@
 mod assemble;
 #[cfg(feature = "brep")]
 mod brep_text;
+mod encoding;
 mod error;
 mod flat;
 mod flat_caps;
@@ -106,6 +107,7 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
     if options.winding.is_some() && !format.has_winding() {
         return Err(ReadError::NoWinding { format });
     }
+    let bytes = if format.is_text(&bytes) { encoding::as_utf8(bytes) } else { bytes };
     let mut model = format.read(&bytes, options)?;
     settle_surfaces::make_sizes_positive(&mut model);
     settle_surfaces::leave_out_still_spans(&mut model);

@@ -5,6 +5,7 @@ use super::lines::{Line, Sections, number};
 use super::parameters::{Record, Value, record};
 use crate::assemble::Notes;
 pub(crate) use crate::assemble::{Bad, Res};
+use crate::encoding::Encoding;
 use chordal_brep::{Millimetres, ReadIssue, Source, Word};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -42,14 +43,26 @@ pub(crate) struct Doc<'a> {
     /// The position of each parameter line; empty where the numbers are as they should be.
     parameter_positions: FxHashMap<u64, usize>,
     pub global: Global,
+    /// Of strings.
+    encoding: Encoding,
     pub notes: Notes,
     /// Bytes of parameters that may still be read: it bounds the work on files whose references fan out for ever.
     budget: Cell<u64>,
 }
 
+/// The encoding of the strings of a file: lines are joined, since characters of several bytes may be broken over two.
+fn encoding_of(sections: &Sections<'_>) -> Encoding {
+    let lines = || sections.global.iter().chain(&sections.parameters).map(|line| line.text);
+    if lines().all(<[u8]>::is_ascii) {
+        return Encoding::Utf8;
+    }
+    Encoding::of(&lines().flatten().copied().collect::<Vec<u8>>())
+}
+
 impl<'a> Doc<'a> {
     pub(crate) fn new(sections: Sections<'a>, size: usize) -> Self {
-        let global = Global::read(&sections.global);
+        let encoding = encoding_of(&sections);
+        let global = Global::read(&sections.global, encoding);
         let notes = Notes::default();
         for issue in &global.issues {
             let line = sections.global.first().map_or(0, |line| line.line);
@@ -71,7 +84,7 @@ impl<'a> Doc<'a> {
             parameters.iter().enumerate().rev().map(|(i, line)| (line.sequence, i)).collect()
         };
         let budget = Cell::new(64 * size as u64 + 10_000_000);
-        Self { entries, by_number, parameters, parameter_positions, global, notes, budget }
+        Self { entries, by_number, parameters, parameter_positions, global, encoding, notes, budget }
     }
 
     pub(crate) fn entry(&self, ix: Ix) -> &Entry {
@@ -364,8 +377,9 @@ impl Args<'_> {
     }
 
     pub(crate) fn string(&mut self) -> String {
+        let encoding = self.doc.encoding;
         match self.next() {
-            Some(Value::Text(text)) => String::from_utf8_lossy(text).trim().to_owned(),
+            Some(Value::Text(text)) => encoding.decode(text).trim().to_owned(),
             _ => String::new(),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::lines::Line;
 use super::parameters::{Record, Value, record};
+use crate::encoding::Encoding;
 use chordal_brep::{ReadIssue, Real};
 
 /// What the global section says of the whole file.
@@ -35,7 +36,7 @@ const UNITS: [(u8, f64, &str, &[&str]); 10] = [
 ];
 
 impl Global {
-    pub(crate) fn read(lines: &[Line<'_>]) -> Self {
+    pub(crate) fn read(lines: &[Line<'_>], encoding: Encoding) -> Self {
         let text: Vec<u8> = lines.iter().flat_map(|line| padded(line.text)).collect();
         let [parameter, end] = delimiters(&text);
         // The delimiters are parameters themselves: `1H,` and `1H;`, or left out.
@@ -53,7 +54,7 @@ impl Global {
             _ => None,
         };
         let string = |i: usize| match values.get(i - 1) {
-            Some(Value::Text(text)) => String::from_utf8_lossy(text).trim().to_owned(),
+            Some(Value::Text(text)) => encoding.decode(text).trim().to_owned(),
             _ => String::new(),
         };
         let (mut length_mm, unit) = unit(number(14), &string(15), &mut issues);
@@ -133,7 +134,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Global {
-        Global::read(&[Line { text: text.as_bytes(), sequence: 1, line: 1 }])
+        Global::read(&[Line { text: text.as_bytes(), sequence: 1, line: 1 }], Encoding::Utf8)
     }
 
     #[test]
