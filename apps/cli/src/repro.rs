@@ -24,10 +24,7 @@ pub fn run(args: &ReproArgs) -> Exit {
 
 fn write(args: &ReproArgs) -> Result<Exit, String> {
     let to_stdout = args.output.as_os_str() == "-";
-    let extension = args.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    if !to_stdout && !extension.eq_ignore_ascii_case("json") {
-        return Err(format!("{}: the output must be a .json file", args.output.display()));
-    }
+    let is_step = is_step(args)?;
     if to_stdout && args.json {
         return Err("--json and the model both go to standard output".into());
     }
@@ -35,11 +32,20 @@ fn write(args: &ReproArgs) -> Result<Exit, String> {
     let input = Input::of(&args.input);
     let failed = |error: chordal::Error| error_sentence(&input.name(), &error);
     let accuracy = &args.accuracy;
-    let found = thread_pool(accuracy.jobs)?.install(|| {
+    let (found, text) = thread_pool(accuracy.jobs)?.install(|| {
         let model = read_model(&input, accuracy.input_format, &accuracy.read_options()).map_err(failed)?;
-        repro(&model, args.face, &accuracy.options(), &Cancel::default()).map_err(failed)
+        let (options, cancel) = (accuracy.options(), Cancel::default());
+        let mut found = repro(&model, args.face, &options, &cancel).map_err(failed)?;
+        if !is_step {
+            let text = found.model.to_json().map_err(failed)?;
+            return Ok((found, text));
+        }
+        let file =
+            std::fs::read(&args.input).map_err(|e| format!("{}: cannot read the file: {e}", input.name()))?;
+        let (text, shows) = found.to_step(&file, &options, &cancel).map_err(failed)?;
+        found.shows = shows;
+        Ok::<_, String>((found, text))
     })?;
-    let text = found.model.to_json().map_err(failed)?;
     if to_stdout {
         print(&text);
     } else {
@@ -51,6 +57,20 @@ fn write(args: &ReproArgs) -> Result<Exit, String> {
     }
     say(&format!("{}: {}", args.output.display(), sentence(args, &found)));
     Ok(if found.shows || found.codes.is_empty() { Exit::Clean } else { Exit::Problems })
+}
+
+/// Whether the output is STEP; else it is JSON.
+fn is_step(args: &ReproArgs) -> Result<bool, String> {
+    let extension = args.output.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match extension.as_str() {
+        "step" | "stp" if args.input.as_os_str() == "-" => {
+            Err("a piece in STEP is cut out of a file: name the file in place of `-`".into())
+        }
+        "step" | "stp" => Ok(true),
+        "json" => Ok(false),
+        _ if args.output.as_os_str() == "-" => Ok(false),
+        _ => Err(format!("{}: the output must be a .json or .step file", args.output.display())),
+    }
 }
 
 /// What the piece is, and how to see the problem.

@@ -71,6 +71,40 @@ fn problems_of_meshing_are_shown_by_the_piece() {
 }
 
 #[test]
+fn a_piece_in_step_shows_the_same_problem() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let piece = folder.path().join("piece.step");
+    for (name, face, code) in [
+        ("bad/zero_direction.step", "#185", "unbounded-face"),
+        ("offset_bspline.step", "#363", "unproven-face"),
+        ("touching_loops.step", "#201", "loops-untangled"),
+        ("weight_negative.step", "#61", "unproven-face"),
+    ] {
+        let ran =
+            run(&format!("repro {{}} --face {face} -o {{}}"), &[&corpus().join(name), &piece]).exits(&[0]);
+        assert!(ran.stderr.contains("`chordal mesh") && ran.stderr.contains(code), "{}", ran.stderr);
+        let text = std::fs::read_to_string(&piece).expect("a file");
+        assert!(
+            text.contains("FILE_NAME('','',(''),(''),'','','')") && text.contains(&format!("\n{face}=")),
+            "{name}"
+        );
+        let info = run("info {} --json", &[&piece]).exits(&[0]).stdout;
+        let info: serde_json::Value = serde_json::from_str(&info).expect("JSON");
+        assert_eq!(info["faces"], 1, "{name}");
+        let problems = info["problems"].as_array().expect("problems");
+        let of_frame = ["no-products", "shape-without-product", "no-top-product", "unit-missing"];
+        assert!(!problems.iter().any(|p| of_frame.iter().any(|code| p["code"] == *code)), "{problems:?}");
+    }
+    // Strings are empty, but for the names of units.
+    run("repro {} --face @0 -o {}", &[&common::model("mixed_units"), &piece]).exits(&[0]);
+    let text = std::fs::read_to_string(&piece).expect("a file");
+    let strings: std::collections::BTreeSet<&str> = text.split('\'').skip(1).step_by(2).collect();
+    assert!(!strings.iter().any(|s| s.contains("mixed")), "{strings:?}");
+    let iges = corpus().join("iges/bounded.igs");
+    run("repro {} --face @0 -o {}", &[&iges, &folder.path().join("p.step")]).exits(&[2]).says_one_sentence();
+}
+
+#[test]
 fn faces_without_problems_are_written_and_unknown_ones_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let piece = folder.path().join("piece.json");

@@ -36,6 +36,8 @@ pub struct Repro {
     pub model: Model,
     /// How many faces it has.
     pub faces: usize,
+    /// Where the face is among them.
+    place: usize,
     /// The codes of the problems that the face has in the model, in order.
     pub codes: Vec<String>,
     /// Whether the face has these problems in the piece, too.
@@ -64,7 +66,35 @@ pub fn repro(model: &Model, face: FaceName, options: &MeshOptions, cancel: &Canc
     let by_default = shows_with(&mesher(&MeshOptions::default()))?;
     let shows = by_default || shows_with(&search.mesher)?;
     let tolerance = tolerance.filter(|_| !by_default);
-    Ok(Repro { model: piece, faces: faces.len(), codes, shows, tolerance })
+    Ok(Repro { model: piece, faces: faces.len(), place: place(&faces, face), codes, shows, tolerance })
+}
+
+impl Repro {
+    /// The piece as a STEP file, cut out of the content of the file that the model came from, and whether the face has
+    /// the same problems there. Where the piece in JSON does not show them, this may.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the content is not that of a STEP file.
+    pub fn to_step(
+        &self,
+        file: &[u8],
+        options: &MeshOptions,
+        cancel: &Cancel,
+    ) -> Result<(String, bool), Error> {
+        let faces = &self.model.brep().parts[0].faces;
+        let entities: Vec<u64> = faces.iter().map(|face| face.source.entity).collect();
+        let failed = |source: chordal_read::ReadError| Error::file(self.model.name(), source.into());
+        let text = chordal_read::step_excerpt(file, &entities).map_err(failed)?;
+        let piece = Model::from_bytes(text.as_bytes(), chordal_read::Format::Step)?;
+        let (part, face) = find(&piece, FaceName::Entity(entities[self.place]))?;
+        let options = match self.tolerance {
+            Some(mm) => options.clone().with_tolerance(Tolerance::Millimetres(mm)),
+            None => MeshOptions::default(),
+        };
+        let mesher = Mesher::new(options).with_cancel(cancel.clone());
+        let shows = shows(&mesher, &piece, index_of(&piece, part, face), &self.codes)?;
+        Ok((text, shows))
+    }
 }
 
 struct Search<'a> {

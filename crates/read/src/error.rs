@@ -45,6 +45,9 @@ pub enum ReadError {
         /// The format.
         format: Format,
     },
+    /// An excerpt in STEP is possible of STEP files only.
+    #[error("a piece in STEP is cut out of STEP files only; write JSON")]
+    NotStep,
     /// A compressed file is damaged, encrypted, or compressed by a method that is not known.
     #[error("the compressed file cannot be unpacked: {reason}")]
     Compressed {

@@ -116,6 +116,20 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
     Ok(model)
 }
 
+/// Faces of a STEP file, by the numbers of their entities, as a STEP file of their own: with all that they refer to, in
+/// the units of the file, without names and header. Numbers that the file does not have are left out.
+///
+/// # Errors
+/// [`ReadError`] where the content cannot be unpacked or is no STEP file.
+pub fn step_excerpt(bytes: &[u8], faces: &[u64]) -> Result<String, ReadError> {
+    let bytes = unpack::unpacked(bytes)?;
+    match Format::of(&bytes) {
+        #[cfg(feature = "step")]
+        Some(Format::Step) => Ok(step::excerpt(&bytes, faces)),
+        _ => Err(ReadError::NotStep),
+    }
+}
+
 /// Content that no reader knows: often a mesh.
 fn unknown(bytes: &[u8]) -> ReadError {
     match triangle_mesh::format_of(bytes) {

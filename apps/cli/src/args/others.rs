@@ -109,8 +109,9 @@ pub struct ReproArgs {
     /// The face: #123, the number of its entity, or @5, its place in `faces_detail` of the report.
     #[arg(long, value_name = "ID")]
     pub face: FaceName,
-    /// The file to write; its name ends in .json. `-` is standard output.
-    #[arg(short, long, value_name = "OUT.json")]
+    /// The file to write: Chordal's JSON, or, where the input is STEP, STEP; its name ends in .json or .step. `-` writes
+    /// JSON to standard output.
+    #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
     #[command(flatten)]
     pub accuracy: AccuracyArgs,
