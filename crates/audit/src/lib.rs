@@ -22,6 +22,7 @@ mod context;
 mod cuts;
 mod distance;
 mod edges;
+mod exact_crossing;
 mod face;
 mod fan;
 mod findings;
@@ -43,5 +44,8 @@ mod unrolled;
 
 pub use distance::{Distance, largest_distance};
 pub use part::audit_part;
-pub use report::{AuditOptions, Claim, FaceAudit, FaceCrossing, PartAudit, Problem, ShellAudit, Subject};
+pub use report::{
+    AuditOptions, Claim, FaceAudit, FaceCrossing, FacetCrossing, PartAudit, Problem, ShellAudit, Subject,
+};
+pub use self_intersections::facet_crossings;
 pub use triangle_tree::{Nearest, TriangleTree};

@@ -207,11 +207,12 @@ fn add_self_intersections(context: &Context<'_>, audit: &mut PartAudit) {
     let closed = audit.shells.iter().filter(|s| s.closed_in_file && s.complete).map(|s| s.shell);
     for shell in closed.collect::<Vec<_>>() {
         let of_model = &context.part.shells[shell as usize];
-        let found = self_intersections(context, &of_model.faces);
+        let found = self_intersections(context.part, context.mesh, &of_model.faces);
         let Some(most) = found.iter().rev().max_by_key(|crossing| crossing.facet_pairs) else { continue };
         let issue = AuditIssue::SelfIntersections {
             triangle_pairs: found.iter().map(|crossing| crossing.facet_pairs).sum(),
             face_pairs: found.len(),
+            in_file: found.iter().filter(|crossing| crossing.in_file).count(),
             faces: most.faces.map(|f| context.part.faces[f as usize].source),
         };
         audit.problems.push(Problem::new(Subject::Shell(shell), of_model.source, issue));

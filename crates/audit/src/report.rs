@@ -1,6 +1,7 @@
 //! The options of an audit and its results.
 
 use chordal_brep::{AuditIssue, Issue, Severity, Source};
+use chordal_nurbs::Box3;
 use std::fmt;
 
 /// What the mesh has to keep, in the part's own units.
@@ -160,6 +161,18 @@ pub struct FaceCrossing {
     pub faces: [u32; 2],
     /// Pairs of facets that cut each other.
     pub facet_pairs: usize,
+    /// The faces themselves cut each other in the file, or their edges are further off them than they are off
+    /// each other: no finer mesh would part them.
+    pub in_file: bool,
+}
+
+/// Two facets of a closed shell that cut each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetCrossing {
+    /// Indices of their faces in the part.
+    pub faces: [u32; 2],
+    /// A box around the line along which they cut each other.
+    pub bounds: Box3,
 }
 
 /// One part.

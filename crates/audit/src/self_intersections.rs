@@ -12,19 +12,27 @@
 //! Two facets of one face are compared only where the surface can come back to itself, and where no view shows
 //! that they lie one beside the other ([`crate::graph`]). The facets of a plane, cylinder, cone, sphere or
 //! plain torus lie so because their parameters do not overlap, which is checked in the chart.
+//!
+//! Of each pair of faces it is then decided whether the faces themselves cut each other in the file
+//! ([`crate::exact_crossing`]), or only their facets do.
 
-use crate::context::Context;
+use crate::exact_crossing::{InFile, in_file};
 use crate::graph::is_graph;
-use crate::report::FaceCrossing;
+use crate::report::{FaceCrossing, FacetCrossing};
 use crate::separation::PlaneFace;
-use crate::triangle_pair::{Facet3, cut_each_other};
-use chordal_brep::{FaceGeometry, FaceId};
+use crate::triangle_pair::{Facet3, cut_each_other, cut_points};
+use chordal_brep::{FaceGeometry, FaceId, Part};
+use chordal_mesh::PartMesh;
 use chordal_nurbs::{Box3, BoxTree, Surface};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
 /// Facets of each of two faces that are compared in order: of more, trees find pairs more quickly.
 const MOST_IN_ORDER: usize = 1024;
+
+/// Cuts of two faces at which it is decided whether the faces themselves cut each other. Each takes some
+/// inversions for every edge of both.
+const MOST_PLACES: usize = 16;
 
 /// The facets of one face of a shell.
 struct FacetsOfFace {
@@ -34,30 +42,63 @@ struct FacetsOfFace {
     tree: OnceLock<BoxTree>,
 }
 
+/// Two faces with the pairs of their facets that cut each other; the first of each pair is of the first face.
+struct Crossing<'f> {
+    faces: [&'f FacetsOfFace; 2],
+    facets: Vec<[u32; 2]>,
+}
+
 /// The pairs of faces of a shell whose facets cut each other, in the order of the faces.
-pub(crate) fn self_intersections(context: &Context<'_>, faces: &[FaceId]) -> Vec<FaceCrossing> {
-    let all: Vec<FacetsOfFace> =
-        faces.par_iter().map(|face| FacetsOfFace::new(context, face.index())).collect();
+pub(crate) fn self_intersections(part: &Part, mesh: &PartMesh, faces: &[FaceId]) -> Vec<FaceCrossing> {
+    let all = facets_of_faces(mesh, faces);
+    let describe = |crossing: &Crossing<'_>| FaceCrossing {
+        faces: crossing.faces.map(|f| f.face),
+        facet_pairs: crossing.facets.len(),
+        in_file: crossing.in_file(part, mesh) != InFile::Apart,
+    };
+    crossings(part, mesh, &all).par_iter().map(describe).collect()
+}
+
+/// Every two facets of the named closed shells that cut each other, in the order of faces and facets, but for those
+/// whose faces cut each other in the file: the places at which to refine a mesh.
+pub fn facet_crossings(part: &Part, mesh: &PartMesh, shells: &[u32]) -> Vec<FacetCrossing> {
+    let mut found = Vec::new();
+    for &shell in shells {
+        let all = facets_of_faces(mesh, &part.shells[shell as usize].faces);
+        let crossings = crossings(part, mesh, &all);
+        let to_part =
+            crossings.par_iter().filter(|crossing| crossing.in_file(part, mesh) != InFile::Crossing);
+        found.extend(to_part.flat_map_iter(Crossing::facet_crossings).collect::<Vec<_>>());
+    }
+    found
+}
+
+fn facets_of_faces(mesh: &PartMesh, faces: &[FaceId]) -> Vec<FacetsOfFace> {
+    faces.par_iter().map(|face| FacetsOfFace::new(mesh, face.index())).collect()
+}
+
+/// The pairs of faces whose facets cut each other, in the order of the faces.
+fn crossings<'f>(part: &Part, mesh: &PartMesh, all: &'f [FacetsOfFace]) -> Vec<Crossing<'f>> {
     let mut pairs: Vec<(u32, u32)> = Vec::new();
     BoxTree::new(all.iter().map(|f| f.bounds)).own_pairs(&mut |i, j| pairs.push((i, j)));
-    leave_out_separate(context, &all, &mut pairs);
+    leave_out_separate(part, mesh, all, &mut pairs);
     pairs.extend(
-        (0..all.len()).filter(|&i| may_meet_itself(context, all[i].face)).map(|i| (i as u32, i as u32)),
+        (0..all.len()).filter(|&i| may_meet_itself(part, mesh, all[i].face)).map(|i| (i as u32, i as u32)),
     );
-    let count = |&(i, j): &(u32, u32)| {
+    let cuts = |&(i, j): &(u32, u32)| {
         let (a, b) = (&all[i as usize], &all[j as usize]);
-        let cuts = if i == j { a.cuts_of_its_own() } else { a.cuts_with(b) };
-        (cuts > 0)
-            .then(|| FaceCrossing { faces: [a.face.min(b.face), a.face.max(b.face)], facet_pairs: cuts })
+        let (a, b) = if a.face <= b.face { (a, b) } else { (b, a) };
+        let mut facets = if i == j { a.cuts_of_its_own() } else { a.cuts_with(b) };
+        facets.sort_unstable();
+        (!facets.is_empty()).then_some(Crossing { faces: [a, b], facets })
     };
-    let mut found: Vec<FaceCrossing> = pairs.par_iter().filter_map(count).collect();
-    found.sort_unstable_by_key(|crossing| crossing.faces);
+    let mut found: Vec<Crossing<'f>> = pairs.par_iter().filter_map(cuts).collect();
+    found.sort_unstable_by_key(|crossing| crossing.faces.map(|f| f.face));
     found
 }
 
 /// Leaves out the pairs of which one face is clearly beside the plane of the other.
-fn leave_out_separate(context: &Context<'_>, all: &[FacetsOfFace], pairs: &mut Vec<(u32, u32)>) {
-    let Context { part, mesh, .. } = context;
+fn leave_out_separate(part: &Part, mesh: &PartMesh, all: &[FacetsOfFace], pairs: &mut Vec<(u32, u32)>) {
     let planes: Vec<Option<PlaneFace>> =
         all.iter().map(|f| PlaneFace::new(part, mesh, f.face as usize)).collect();
     let is_beside = |plane: u32, other: u32| {
@@ -71,8 +112,8 @@ fn leave_out_separate(context: &Context<'_>, all: &[FacetsOfFace], pairs: &mut V
 
 /// False for surfaces on which points with different parameters are different points, and where a view shows
 /// that no facet is over another one.
-fn may_meet_itself(context: &Context<'_>, face: u32) -> bool {
-    match &context.part.faces[face as usize].geometry {
+fn may_meet_itself(part: &Part, mesh: &PartMesh, face: u32) -> bool {
+    match &part.faces[face as usize].geometry {
         FaceGeometry::Failed(_) => false,
         FaceGeometry::Surface(surface) => match surface.as_ref() {
             Surface::Plane { .. }
@@ -80,19 +121,41 @@ fn may_meet_itself(context: &Context<'_>, face: u32) -> bool {
             | Surface::Cone { .. }
             | Surface::Sphere { .. } => false,
             Surface::Torus { major, minor, .. } => major.abs() < minor.abs(),
-            _ => !is_graph(context.mesh, &context.mesh.faces[face as usize]),
+            _ => !is_graph(mesh, &mesh.faces[face as usize]),
         },
     }
 }
 
+impl Crossing<'_> {
+    /// The two facets of each pair.
+    fn pairs(&self) -> impl Iterator<Item = [&Facet3; 2]> + '_ {
+        let [a, b] = self.faces;
+        self.facets.iter().map(|&[s, t]| [&a.facets[s as usize], &b.facets[t as usize]])
+    }
+
+    fn facet_crossings(&self) -> impl Iterator<Item = FacetCrossing> + '_ {
+        let faces = self.faces.map(|f| f.face);
+        self.pairs().map(move |[s, t]| FacetCrossing { faces, bounds: cut_points(s, t) })
+    }
+
+    /// What the file says about the two faces, by places spread over all their cuts.
+    fn in_file(&self, part: &Part, mesh: &PartMesh) -> InFile {
+        let faces = self.faces.map(|f| f.face as usize);
+        let cuts = self.pairs().zip(&self.facets).step_by(self.facets.len().div_ceil(MOST_PLACES));
+        let found =
+            cuts.map(|([s, t], &facets)| in_file(part, mesh, faces, facets, cut_points(s, t).center()));
+        found.max().unwrap_or(InFile::Apart)
+    }
+}
+
 impl FacetsOfFace {
-    fn new(context: &Context<'_>, face: usize) -> Self {
-        let mesh = &context.mesh.faces[face];
+    fn new(mesh: &PartMesh, face: usize) -> Self {
+        let of_face = &mesh.faces[face];
         let facet = |t: &[u32; 3]| {
-            let corners = t.map(|c| mesh.corners[c as usize].position);
-            Facet3::new(corners, corners.map(|p| context.mesh.positions[p as usize]))
+            let corners = t.map(|c| of_face.corners[c as usize].position);
+            Facet3::new(corners, corners.map(|p| mesh.positions[p as usize]))
         };
-        let facets: Vec<Facet3> = mesh.triangles.iter().map(facet).collect();
+        let facets: Vec<Facet3> = of_face.triangles.iter().map(facet).collect();
         let bounds = facets.iter().fold(Box3::EMPTY, |all, f| all.union(f.bounds()));
         Self { face: face as u32, facets, bounds, tree: OnceLock::new() }
     }
@@ -107,18 +170,22 @@ impl FacetsOfFace {
         all.filter(|(bounds, _)| bounds.meets(region)).collect()
     }
 
-    fn cuts_with(&self, other: &Self) -> usize {
-        let mut cuts = 0;
+    fn cuts_with(&self, other: &Self) -> Vec<[u32; 2]> {
+        let mut cuts = Vec::new();
         pairs_between(self, other, &mut |i, j| {
-            cuts += usize::from(cut_each_other(&self.facets[i as usize], &other.facets[j as usize]));
+            if cut_each_other(&self.facets[i as usize], &other.facets[j as usize]) {
+                cuts.push([i, j]);
+            }
         });
         cuts
     }
 
-    fn cuts_of_its_own(&self) -> usize {
-        let mut cuts = 0;
+    fn cuts_of_its_own(&self) -> Vec<[u32; 2]> {
+        let mut cuts = Vec::new();
         self.tree().own_pairs(&mut |i, j| {
-            cuts += usize::from(cut_each_other(&self.facets[i as usize], &self.facets[j as usize]));
+            if cut_each_other(&self.facets[i as usize], &self.facets[j as usize]) {
+                cuts.push([i, j]);
+            }
         });
         cuts
     }

@@ -85,6 +85,26 @@ pub(crate) fn cut_each_other(s: &Facet3, t: &Facet3) -> bool {
     }
 }
 
+/// A box around the points at which sides of one triangle meet the other one, up to rounding; around what their
+/// boxes have in common where both lie in one plane.
+pub(crate) fn cut_points(s: &Facet3, t: &Facet3) -> Box3 {
+    let mut all = Box3::EMPTY;
+    for (of, other) in [(s, t), (t, s)] {
+        for i in 0..3 {
+            let (a, b) = (of.xyz[i], of.xyz[(i + 1) % 3]);
+            let (of_a, of_b) = (other.side_of(a), other.side_of(b));
+            if !on_same_side(of_a, of_b) && through_inside(a, b, &other.xyz) {
+                all = all.including(a.lerp(b, of_a / (of_a - of_b)));
+            }
+        }
+    }
+    if all.is_empty() {
+        let (a, b) = (s.bounds(), t.bounds());
+        all = Box3 { min: a.min.max(b.min), max: a.max.min(b.max) };
+    }
+    all
+}
+
 fn exact_side(plane: &Triangle, p: DVec3) -> f64 {
     // Four points with one coordinate in common are in one plane: most are on models along the axes.
     let same = |axis: usize| plane.iter().all(|q| q[axis] == p[axis]);

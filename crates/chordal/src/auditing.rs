@@ -2,10 +2,14 @@
 
 use crate::meshed_part::MeshedPart;
 use crate::resolve::Resolved;
-use chordal_audit::{AuditOptions, Claim, FaceCrossing, Problem, Subject, audit_part};
-use chordal_brep::{AuditIssue, Issue, Model, Part};
-use chordal_tessellate::{Bound, FaceReport, Options};
+use chordal_audit::{
+    AuditOptions, Claim, FaceCrossing, PartAudit, Problem, Subject, audit_part, facet_crossings,
+};
+use chordal_brep::{AuditIssue, Issue, Model, Part, Shell};
+use chordal_mesh::PartMesh;
+use chordal_tessellate::{Bound, Cancel, FaceReport, FacetCut, Options, tessellate_part_apart};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// What the audit found out about one part; lengths in the part's own units.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,8 +36,14 @@ pub(crate) struct AuditedShell {
 }
 
 /// Audits every part that is placed. What the audit proves of a face less tightly than the mesher takes the place of the
-/// mesher's own figure.
-pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &mut [MeshedPart]) -> Vec<AuditedPart> {
+/// mesher's own figure. A part whose facets cut each other although its faces do not is meshed again, finer there.
+pub(crate) fn audit_parts(
+    model: &Model,
+    resolved: &Resolved,
+    parts: &mut [MeshedPart],
+    self_intersections: bool,
+    cancel: &Cancel,
+) -> Vec<AuditedPart> {
     model
         .parts
         .par_iter()
@@ -43,22 +53,80 @@ pub(crate) fn audit_parts(model: &Model, resolved: &Resolved, parts: &mut [Meshe
             if part_use.instances == 0 {
                 AuditedPart::default()
             } else {
-                audit(part, meshed, options, part_use.scale)
+                let asked = AuditOptions::new(options.largest_tolerance())
+                    .with_angle(options.angle)
+                    .with_proven(options.bound == Bound::Proven)
+                    .with_millimetres(part_use.scale)
+                    .with_self_intersections(self_intersections);
+                let audit = audited(part, meshed, &asked);
+                let audit = parted(part, meshed, audit, options, &asked, cancel);
+                account_of(part, meshed, audit, options)
             }
         })
         .collect()
 }
 
-fn audit(part: &Part, meshed: &mut MeshedPart, options: &Options, scale: f64) -> AuditedPart {
-    // Where loops were untangled, the mesh is of the healed part.
+/// What the audit says about a meshed part, and what the mesher claims. Where loops were untangled, the mesh is of the
+/// healed part.
+fn audited(part: &Part, meshed: &MeshedPart, asked: &AuditOptions) -> PartAudit {
+    let part = meshed.report.healed.as_deref().unwrap_or(part);
+    audit_part(part, &meshed.mesh, asked, Some(&claims(meshed)))
+}
+
+fn claims(meshed: &MeshedPart) -> Vec<Claim> {
+    meshed.report.faces.iter().map(claim).collect()
+}
+
+/// Meshes a part once more where facets cut each other and their faces do not, and takes this mesh if fewer faces cut each
+/// other and nothing else is worse.
+fn parted(
+    part: &Part,
+    meshed: &mut MeshedPart,
+    audit: PartAudit,
+    options: &Options,
+    asked: &AuditOptions,
+    cancel: &Cancel,
+) -> PartAudit {
+    let meshed_part = meshed.report.healed.as_deref().unwrap_or(part);
+    let crossing: Vec<u32> = audit
+        .problems
+        .iter()
+        .filter(|problem| matches!(problem.issue, AuditIssue::SelfIntersections { .. }))
+        .filter_map(|problem| if let Subject::Shell(shell) = problem.subject { Some(shell) } else { None })
+        .filter(|&shell| is_proven(&meshed_part.shells[shell as usize], meshed, options))
+        .collect();
+    if crossing.is_empty() {
+        return audit;
+    }
+    let find = |part: &Part, mesh: &PartMesh| -> Vec<FacetCut> {
+        let cuts = facet_crossings(part, mesh, &crossing).into_iter();
+        cuts.map(|cut| FacetCut { faces: cut.faces, bounds: cut.bounds }).collect()
+    };
+    if find(meshed_part, &meshed.mesh).is_empty() {
+        return audit;
+    }
+    let (mesh, report) = tessellate_part_apart(part, options, cancel, &find);
+    let again = MeshedPart { mesh: Arc::new(mesh), report };
+    let audit_again = audited(part, &again, asked);
+    let is_better = audit_again.self_intersections.len() < audit.self_intersections.len()
+        && audit_again.problems.len() <= audit.problems.len();
+    if !is_better {
+        return audit;
+    }
+    *meshed = again;
+    audit_again
+}
+
+/// True where all faces of a shell are proven. A face without a proof has worse faults than cuts, and takes long.
+fn is_proven(shell: &Shell, meshed: &MeshedPart, options: &Options) -> bool {
+    let is_over = |face: usize| !(meshed.report.faces[face].proven_error <= options.largest_tolerance());
+    options.bound == Bound::Estimated || !shell.faces.iter().any(|face| is_over(face.index()))
+}
+
+fn account_of(part: &Part, meshed: &mut MeshedPart, audit: PartAudit, options: &Options) -> AuditedPart {
     let healed = meshed.report.healed.clone();
     let part = healed.as_deref().unwrap_or(part);
-    let claims: Vec<Claim> = meshed.report.faces.iter().map(claim).collect();
-    let asked = AuditOptions::new(options.largest_tolerance())
-        .with_angle(options.angle)
-        .with_proven(options.bound == Bound::Proven)
-        .with_millimetres(scale);
-    let audit = audit_part(part, &meshed.mesh, &asked, Some(&claims));
+    let claims = claims(meshed);
     for (of_face, audited) in meshed.report.faces.iter_mut().zip(&audit.faces) {
         // Not where nothing is proven: that stays so.
         if of_face.proven_error < audited.proven_error {

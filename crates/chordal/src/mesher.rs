@@ -105,7 +105,13 @@ impl Mesher {
 
         // 4. Audit: recompute every promise from the model and the meshes.
         run.tell(Phase::Auditing, 0.0);
-        let audits = ledger.time(|s| &mut s.audit, || audit_parts(&exact, &resolved, &mut parts));
+        let audits = ledger.time(
+            |s| &mut s.audit,
+            || {
+                let self_intersections = self.options.self_intersections();
+                audit_parts(&exact, &resolved, &mut parts, self_intersections, run.cancel())
+            },
+        );
         run.check()?;
 
         // 5. Account: what was done, what is proven, what went wrong.

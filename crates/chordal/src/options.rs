@@ -30,6 +30,7 @@ pub struct MeshOptions {
     boundary_tolerance: Option<Tolerance>,
     sewing: Sewing,
     output_format: Option<Format>,
+    self_intersections: bool,
     /// Lengths are millimetres; its own tolerances are set for each part.
     mesher: Options,
 }
@@ -45,6 +46,7 @@ impl Default for MeshOptions {
             boundary_tolerance: None,
             sewing: Sewing::default(),
             output_format: None,
+            self_intersections: true,
             mesher,
         }
     }
@@ -108,6 +110,13 @@ impl MeshOptions {
         self
     }
 
+    /// Whether triangles of closed shells that cut each other are looked for. Where the faces do not cut each other in the
+    /// file, both are refined there until their triangles part; what cuts even so is reported. Default: yes.
+    pub fn with_self_intersections(mut self, look: bool) -> Self {
+        self.self_intersections = look;
+        self
+    }
+
     /// The format that the mesh will be written in. The rounding of a format with 32-bit coordinates (binary STL, GLB)
     /// is kept back from the tolerance, so that the mesh **as written** keeps it. `None`, the default: nothing is kept
     /// back.
@@ -134,6 +143,11 @@ impl MeshOptions {
     /// The format that the mesh will be written in.
     pub fn output_format(&self) -> Option<Format> {
         self.output_format
+    }
+
+    /// Whether triangles that cut each other are looked for.
+    pub fn self_intersections(&self) -> bool {
+        self.self_intersections
     }
 
     /// The name of the fill method, `default` where there is none.

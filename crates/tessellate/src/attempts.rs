@@ -70,7 +70,8 @@ fn attempt(
     };
     let mut face = FaceMesh::new(context, limits, chart, shape, triangles, &options.bulk);
     // 3. Fill it and prove it.
-    let bounds = SurfaceBounds::new(context.trimmed.surface.surface, uv_box, limits.tolerance);
+    let finest = context.closer.iter().fold(limits.tolerance, |least, place| least.min(place.tolerance));
+    let bounds = SurfaceBounds::new(context.trimmed.surface.surface, uv_box, finest);
     let mut prover = Prover::new(&bounds, limits, options, context.deadline, cancel, effort);
     if are_loops_crossing && face.is_turned_somewhere() {
         prover = prover.for_crossing_loops();

@@ -1,6 +1,7 @@
 //! What the stages of one face share.
 
 use crate::clock::Deadline;
+use crate::closer::Closer;
 use crate::shared_edge::SharedEdge;
 use chordal_chart::TrimmedFace;
 
@@ -11,6 +12,8 @@ pub(crate) struct FaceContext<'a, 's> {
     pub trimmed: TrimmedFace<'a, 's>,
     /// Inner edges that it must do without: another face has them.
     pub doubled: &'a [SharedEdge],
+    /// Places at which its facets must keep a smaller tolerance.
+    pub closer: &'a [Closer],
     /// When the face is given up.
     pub deadline: Option<Deadline>,
 }

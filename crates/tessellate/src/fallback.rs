@@ -14,10 +14,15 @@ use chordal_brep::{MeshIssue, MethodFault};
 /// the ones that ask for finer edges. Further passes would only add the neighbours' neighbours.
 const PASSES: usize = 2;
 
-/// Meshes the part once more where methods left faces unproven; nothing where the options name no method.
-pub(crate) fn leave_to_default(job: &PartJob<'_>, mut result: PassResult) -> PassResult {
+/// Meshes the part once more where methods left faces unproven; nothing where the options name no method. The
+/// result comes with the pass that made it.
+pub(crate) fn leave_to_default<'j, 'a>(
+    mut pass: Pass<'j, 'a>,
+    mut result: PassResult,
+) -> (Pass<'j, 'a>, PassResult) {
+    let job = pass.job;
     if job.options.fill_method.is_none() && job.options.edge_splitter.is_none() {
-        return result;
+        return (pass, result);
     }
     let count = |faces: &[bool]| faces.iter().filter(|&&f| f).count();
     let mut by_default = vec![false; result.faces.len()];
@@ -30,9 +35,9 @@ pub(crate) fn leave_to_default(job: &PartJob<'_>, mut result: PassResult) -> Pas
         if number > 0 {
             by_default = with_neighbours(job, &by_default);
         }
-        let pass = Pass::with_default_for(job, by_default.clone());
-        let mut again = pass.run(&|_| ());
-        separate(&pass, &mut again);
+        let next = Pass::with_default_for(job, by_default.clone());
+        let mut again = next.run(&|_| ());
+        separate(&next, &mut again);
         let still_unproven = unproven_faces(job, &again.faces);
         if count(&still_unproven) >= count(&unproven) {
             break;
@@ -45,9 +50,9 @@ pub(crate) fn leave_to_default(job: &PartJob<'_>, mut result: PassResult) -> Pas
             }
         }
         again.edge_faults.splice(..0, result.edge_faults);
-        (result, unproven) = (again, still_unproven);
+        (pass, result, unproven) = (next, again, still_unproven);
     }
-    result
+    (pass, result)
 }
 
 /// That the method of the options gave up a face, and why; `before` is what the pass before made of it.

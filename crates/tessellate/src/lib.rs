@@ -10,7 +10,8 @@
 //!    round are merged, and only the faces at those edges run again.
 //! 4. Where loops cross in truth, give the model vertices there and loops that do not, and mesh it again
 //!    ([`chordal_chart::uncrossed`]).
-//! 5. Join the faces (`orient`, `stitch`).
+//! 5. Where facets cut each other and their faces do not, refine both (`parting`), if whoever calls asks for it.
+//! 6. Join the faces (`orient`, `stitch`).
 //!
 //! How hard a face is tried, and in which order remedies are taken, is written down in `effort`. Other crates
 //! may fill faces and cut edges in their own ways ([`method`]).
@@ -18,6 +19,7 @@
 mod attempts;
 mod bulk;
 mod clock;
+mod closer;
 mod default_fill;
 mod edge_use;
 mod edges;
@@ -38,6 +40,7 @@ mod orient;
 mod panics;
 mod part;
 mod part_job;
+mod parting;
 mod pcurve_gap;
 mod poles;
 mod prove;
@@ -56,6 +59,7 @@ pub use clock::Stopwatch;
 pub use limits::Bound;
 pub use options::{Cancel, Options};
 pub use panics::remember_panic;
-pub use part::tessellate_part;
+pub use part::{tessellate_part, tessellate_part_apart};
+pub use parting::{FacetCut, FindCuts};
 pub use report::{FaceReport, PartReport, Phases, StageSeconds};
 pub use trace::Trace;

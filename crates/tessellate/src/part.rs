@@ -10,6 +10,7 @@ use crate::options::{Cancel, Options};
 use crate::orient::{settle_orientation, turn_inside_out};
 use crate::panics::caught;
 use crate::part_job::{PartJob, exact_surfaces};
+use crate::parting::{FindCuts, part_facets};
 use crate::pcurve_gap::pcurve_gap;
 use crate::report::{FaceReport, PartReport};
 use crate::rounds::{Pass, PassResult};
@@ -34,8 +35,30 @@ pub fn tessellate_part(
     cancel: &Cancel,
     done: &(dyn Fn(usize) + Sync),
 ) -> (PartMesh, PartReport) {
+    in_healings(part, options, cancel, None, done)
+}
+
+/// Meshes one part as [`tessellate_part`] does, and refines it where facets cut each other until they part.
+///
+/// `find` is called with the part, healed where its loops cross, and a mesh of it.
+pub fn tessellate_part_apart(
+    part: &Part,
+    options: &Options,
+    cancel: &Cancel,
+    find: &FindCuts<'_>,
+) -> (PartMesh, PartReport) {
+    in_healings(part, options, cancel, Some(find), &|_| ())
+}
+
+fn in_healings(
+    part: &Part,
+    options: &Options,
+    cancel: &Cancel,
+    find: Option<&FindCuts<'_>>,
+    done: &(dyn Fn(usize) + Sync),
+) -> (PartMesh, PartReport) {
     let mut known = KnownFaces::default();
-    let mut made = mesh_once(part, &known, options, cancel, done);
+    let mut made = mesh_once(part, &known, options, cancel, find, done);
     for _ in 0..HEALINGS {
         let is_new = made.crossed.iter().any(|face| !known.touching.contains(face));
         let uncrossed = made.uncrossed.take();
@@ -50,7 +73,7 @@ pub fn tessellate_part(
             }
             None => (made.report.healed.clone(), Vec::new()),
         };
-        let again = mesh_once(healed.as_deref().unwrap_or(part), &known, options, cancel, &|_| ());
+        let again = mesh_once(healed.as_deref().unwrap_or(part), &known, options, cancel, find, &|_| ());
         // What still crosses is left as the file has it.
         if again.crossed.len() >= made.crossed.len() {
             break;
@@ -79,6 +102,7 @@ fn mesh_once(
     known: &KnownFaces,
     options: &Options,
     cancel: &Cancel,
+    find: Option<&FindCuts<'_>>,
     done: &(dyn Fn(usize) + Sync),
 ) -> MeshedOnce {
     let mut report = PartReport::default();
@@ -97,7 +121,10 @@ fn mesh_once(
     let clock = Stopwatch::of_wall();
     let mut result = pass.run_with(sampled, done);
     separate(&pass, &mut result);
-    let result = leave_to_default(&job, result);
+    let (pass, mut result) = leave_to_default(pass, result);
+    if let Some(find) = find {
+        result = part_facets(pass, result, find);
+    }
     report.seconds.faces = clock.seconds();
     let crossed = crossed_faces(&result);
     let uncrossed = uncrossed_part(&job, &result.edges, &crossed);
@@ -111,7 +138,7 @@ fn mesh_once(
     let mut faces: Vec<Option<Box<FaceResult>>> = faces.into_iter().map(Result::ok).collect();
     settle_orientation(&mut faces);
     turn_inside_out(part, &edges, &mut faces);
-    let mesh = stitch(part, &edges, &faces);
+    let mesh = stitch(part, &edges, &faces.iter().map(Option::as_deref).collect::<Vec<_>>());
     report.seconds.stitch = clock.seconds();
     MeshedOnce { mesh, report, crossed, uncrossed }
 }

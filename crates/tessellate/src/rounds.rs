@@ -11,6 +11,7 @@
 
 use crate::attempts::mesh_face;
 use crate::clock::{Deadline, Stopwatch};
+use crate::closer::Closer;
 use crate::edges::{SampledEdge, split_chords};
 use crate::effort::{Effort, MAX_ROUNDS, Setback};
 use crate::face_context::FaceContext;
@@ -36,7 +37,12 @@ pub(crate) struct Pass<'j, 'a> {
     /// Of every face: the default meshes it and its edges, in place of the methods of the options. None: no
     /// face.
     by_default: Option<(Options, Vec<bool>)>,
+    /// Of every face, the places at which its facets must keep a smaller tolerance; empty where no face has any.
+    pub closer: Vec<Vec<Closer>>,
 }
+
+/// What a face is before its edges are fine enough for it.
+const UNFINISHED: MeshIssue = MeshIssue::EdgesTooCoarse { rounds: MAX_ROUNDS };
 
 /// An edge that has no samples, and why.
 pub(crate) type EdgeFault = (u32, MeshIssue);
@@ -48,6 +54,7 @@ pub(crate) struct SampledEdges {
 }
 
 /// What a pass makes.
+#[derive(Clone)]
 pub(crate) struct PassResult {
     pub edges: Vec<EdgeSamples>,
     /// Of every edge, the fewest chords that the tolerance allows.
@@ -60,16 +67,23 @@ pub(crate) struct PassResult {
     pub rounds: usize,
 }
 
+impl PassResult {
+    /// Triangles of all faces.
+    pub fn triangle_count(&self) -> usize {
+        self.faces.iter().flatten().map(|face| face.triangles.len()).sum()
+    }
+}
+
 impl<'j, 'a> Pass<'j, 'a> {
     /// All faces and edges by the methods of the options.
     pub fn new(job: &'j PartJob<'a>) -> Self {
-        Self { job, by_default: None }
+        Self { job, by_default: None, closer: Vec::new() }
     }
 
     /// These faces and their edges by the default, the others by the methods of the options.
     pub fn with_default_for(job: &'j PartJob<'a>, faces: Vec<bool>) -> Self {
         let options = Options { fill_method: None, edge_splitter: None, ..job.options.clone() };
-        Self { job, by_default: Some((options, faces)) }
+        Self { job, by_default: Some((options, faces)), closer: Vec::new() }
     }
 
     fn options_of_face(&self, face: usize) -> &Options {
@@ -199,6 +213,7 @@ impl<'j, 'a> Pass<'j, 'a> {
                 resolution: job.resolution,
             },
             doubled,
+            closer: self.closer.get(face).map_or(&[], Vec::as_slice),
             deadline,
         };
         let options = self.options_of_face(face);
@@ -238,17 +253,24 @@ impl<'j, 'a> Pass<'j, 'a> {
     pub fn run_with(&self, sampled: SampledEdges, done: &(dyn Fn(usize) + Sync)) -> PassResult {
         let SampledEdges { edges, faults: edge_faults } = sampled;
         let edges_given_up = edges.iter().filter(|edge| edge.method_gave_up).count();
-        let (mut edges, fewest): (Vec<EdgeSamples>, Vec<f64>) =
+        let (edges, fewest): (Vec<EdgeSamples>, Vec<f64>) =
             edges.into_iter().map(|edge| (edge.samples, edge.fewest)).unzip();
         let n = self.job.part.faces.len();
-        let unfinished = MeshIssue::EdgesTooCoarse { rounds: MAX_ROUNDS };
-        let mut faces: Vec<Meshed> = vec![Err(unfinished.clone()); n];
-        let mut dirty: Vec<usize> = (0..n).collect();
+        let faces = vec![Err(UNFINISHED); n];
+        let mut result = PassResult { edges, fewest, edges_given_up, edge_faults, faces, rounds: 0 };
+        self.run_rounds(&mut result, (0..n).collect(), done);
+        result
+    }
+
+    /// Meshes these faces, again where they have a mesh already; those that ask for finer edges, and their
+    /// neighbours, again.
+    pub fn run_rounds(&self, result: &mut PassResult, mut dirty: Vec<usize>, done: &(dyn Fn(usize) + Sync)) {
         let finished = AtomicUsize::new(0);
         let mut rounds = 0;
         for round in 0.. {
+            let edges = &result.edges;
             let mesh = |&face: &usize| {
-                let result = self.mesh_one(face, &edges, round, &[]);
+                let result = self.mesh_one(face, edges, round, &[]);
                 if round == 0 {
                     done(finished.fetch_add(1, Ordering::Relaxed) + 1);
                 }
@@ -256,19 +278,19 @@ impl<'j, 'a> Pass<'j, 'a> {
             };
             let results: Vec<Result<Meshed, Vec<(u32, u32)>>> = dirty.par_iter().map(mesh).collect();
             let mut requests = Vec::new();
-            for (&face, result) in dirty.iter().zip(results) {
-                faces[face] = result.unwrap_or_else(|chords| {
+            for (&face, meshed) in dirty.iter().zip(results) {
+                result.faces[face] = meshed.unwrap_or_else(|chords| {
                     requests.extend(chords);
-                    Err(unfinished.clone())
+                    Err(UNFINISHED)
                 });
             }
             if requests.is_empty() || round == MAX_ROUNDS || self.job.cancel.is_cancelled() {
                 break;
             }
             rounds = round + 1;
-            dirty = self.refine_edges(&mut edges, requests, round);
+            dirty = self.refine_edges(&mut result.edges, requests, round);
         }
-        PassResult { edges, fewest, edges_given_up, edge_faults, faces, rounds }
+        result.rounds += rounds;
     }
 
     /// Cuts the chords that faces asked for; returns the faces at their edges.

@@ -16,7 +16,7 @@ struct Stitcher<'a> {
 }
 
 /// Joins the faces of a part; failed ones are `None`.
-pub(crate) fn stitch(part: &Part, edges: &[EdgeSamples], faces: &[Option<Box<FaceResult>>]) -> PartMesh {
+pub(crate) fn stitch(part: &Part, edges: &[EdgeSamples], faces: &[Option<&FaceResult>]) -> PartMesh {
     let mut stitcher = Stitcher {
         part,
         edges,

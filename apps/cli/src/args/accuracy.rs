@@ -57,6 +57,9 @@ pub struct AccuracyArgs {
     /// edge method].
     #[arg(long, value_name = "S", value_parser = parse_seconds)]
     pub face_timeout: Option<TimeoutArg>,
+    /// Do not look for triangles of closed shells that cut each other, and do not refine where they do.
+    #[arg(long)]
+    pub no_self_intersections: bool,
 }
 
 /// A face of a sound file takes milliseconds by the default strategy; a few hostile ones must not take minutes.
@@ -101,6 +104,7 @@ impl AccuracyArgs {
             .with_sewing(self.sew.unwrap_or_default())
             .with_bound(bound)
             .with_face_timeout(self.face_timeout())
+            .with_self_intersections(!self.no_self_intersections)
     }
 
     fn face_timeout(&self) -> Option<Duration> {

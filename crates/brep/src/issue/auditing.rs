@@ -59,6 +59,9 @@ pub enum AuditIssue {
         triangle_pairs: usize,
         /// Pairs of faces that they belong to.
         face_pairs: usize,
+        /// How many of these pairs of faces cut each other in the file, or meet at edges that are further off
+        /// the faces than the faces are off each other. The facets of the others are only too coarse.
+        in_file: usize,
         /// The pair of faces with the most pairs of triangles; twice the same where a face cuts itself.
         faces: [Source; 2],
     },
@@ -310,7 +313,7 @@ impl fmt::Display for AuditIssue {
             AuditIssue::InsideOut { volume } => {
                 write!(f, "the shell is inside out: its volume is {} mm³", number(*volume, 4))
             }
-            AuditIssue::SelfIntersections { triangle_pairs, face_pairs, faces: [a, b] } => {
+            AuditIssue::SelfIntersections { triangle_pairs, face_pairs, in_file, faces: [a, b] } => {
                 let triangles = count(*triangle_pairs, "pair of triangles", "pairs of triangles");
                 let verb = if *triangle_pairs == 1 { "cuts" } else { "cut" };
                 write!(f, "{triangles} of the shell {verb} each other, ")?;
@@ -319,6 +322,19 @@ impl fmt::Display for AuditIssue {
                     (false, 1) => write!(f, "of faces {a} and {b}"),
                     (true, n) => write!(f, "in {n} pairs of faces, most within face {a}"),
                     (false, n) => write!(f, "in {n} pairs of faces, most of {a} and {b}"),
+                }?;
+                match (*in_file, face_pairs - in_file) {
+                    (_, 0) => write!(f, "; the exact faces or their edges cross in the file"),
+                    (0, _) => write!(
+                        f,
+                        "; no crossing of the exact faces was found, a finer tolerance may part them"
+                    ),
+                    (1, _) => {
+                        write!(f, "; in one of these pairs the exact faces or their edges cross in the file")
+                    }
+                    (n, _) => {
+                        write!(f, "; in {n} of these pairs the exact faces or their edges cross in the file")
+                    }
                 }
             }
             AuditIssue::DegenerateTriangles { triangles } => {

@@ -13,6 +13,7 @@ use super::Prover;
 use super::chords::{CHORD_BENDS, bend, close_to_boundary};
 use super::mend::clearly_longest;
 use super::sampled::sampled_bound;
+use crate::closer::{box_around, tolerance_within};
 use crate::effort::Remedy;
 use crate::face_mesh::FaceMesh;
 use crate::limits::{TURN_LENGTH, turns_too_far};
@@ -72,15 +73,17 @@ impl Prover<'_> {
     /// The allowed distance of a facet: the tolerance of edges for facets that touch one, if that is larger.
     ///
     /// This holds for all facets at an edge, not only for those over its chords: a facet from one end of a
-    /// long chord to its middle is long itself.
+    /// long chord to its middle is long itself. It is less where facets cut those of another face.
     pub(super) fn allowed(&self, face: &FaceMesh<'_, '_>, corners: [u32; 3]) -> f64 {
         let on_edge = |v: u32| !matches!(face.key(v), Key::Private(_));
         let boundary = self.limits.boundary;
-        if boundary > self.limits.tolerance && corners.into_iter().any(on_edge) {
-            boundary
-        } else {
-            self.limits.tolerance
+        let is_at_edge = boundary > self.limits.tolerance && corners.into_iter().any(on_edge);
+        let allowed = if is_at_edge { boundary } else { self.limits.tolerance };
+        let places = face.context().closer;
+        if places.is_empty() {
+            return allowed;
         }
+        tolerance_within(places, &box_around(&corners.map(|v| face.xyz(v))), allowed)
     }
 
     /// A triangle whose corners are not three vertices is not written.
