@@ -4,14 +4,16 @@
 
 mod common;
 
-use chordal_audit::{AuditOptions, PartAudit, audit_part};
+use chordal_audit::{AuditOptions, PartAudit, audit_part, facet_crossings};
 use chordal_brep::{
     Body, BodyKind, Coedge, Edge, EdgeId, Face, FaceGeometry, FaceId, Loop, Part, Shell, ShellId, Source,
     Vertex, VertexId,
 };
 use chordal_mesh::{Corner, FaceMesh, Origin, PartMesh};
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface, math};
+use chordal_tessellate::{Cancel, FacetCut, Options, tessellate_part_apart};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const TOLERANCE: f64 = 0.02;
 
@@ -397,5 +399,49 @@ fn facets_that_cut_each_other_are_found() {
         assert_eq!(audit.self_intersections.is_empty(), !cut);
         let off = AuditOptions::new(TOLERANCE).with_self_intersections(false);
         assert!(audit_part(&part, &mesh(&part), &off, None).clean());
+    }
+}
+
+/// A ball with a tetrahedron inside, one corner of which is this far from the centre.
+fn ball_with_spike(reach: f64) -> Part {
+    let mut part = Part::default();
+    tetrahedron(&mut part, DVec3::splat(-reach / 3.0_f64.sqrt()));
+    let sphere = Surface::Sphere { frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X), radius: 1.0 };
+    face(&mut part, sphere, Vec::new());
+    close(&mut part, true);
+    part
+}
+
+#[test]
+fn facets_that_cut_each_other_are_refined_until_they_part() {
+    let part = ball_with_spike(0.999);
+    let plain = mesh(&part);
+    let audit = audited(&part, &plain);
+    assert!(audit.self_intersections.iter().all(|crossing| !crossing.in_file), "the faces are apart");
+    let searches = AtomicUsize::new(0);
+    let find = |part: &Part, mesh: &PartMesh| -> Vec<FacetCut> {
+        searches.fetch_add(1, Ordering::Relaxed);
+        let cuts = facet_crossings(part, mesh, &[0]).into_iter();
+        cuts.map(|cut| FacetCut { faces: cut.faces, bounds: cut.bounds }).collect()
+    };
+    let options = Options::new(TOLERANCE);
+    let (parted, report) = tessellate_part_apart(&part, &options, &Cancel::default(), &find);
+    assert!(audited(&part, &parted).clean(), "{:?}", audited(&part, &parted).problems);
+    assert!(report.faces.iter().all(|face| face.proven_error <= TOLERANCE));
+    assert!(searches.into_inner() > 1);
+    let (before, after) = (plain.triangle_count(), parted.triangle_count());
+    assert!(before < after && after < 2 * before, "refined at the corner only: {before}, {after}");
+}
+
+#[test]
+fn faces_that_cut_each_other_in_the_file_are_told_from_facets_that_do() {
+    for (reach, in_file) in [(0.999, false), (1.05, true)] {
+        let part = ball_with_spike(reach);
+        let mesh = mesh(&part);
+        let audit = audited(&part, &mesh);
+        assert_eq!(codes(&audit), ["self-intersections"], "{:?}", audit.problems);
+        assert!(audit.self_intersections.iter().any(|crossing| crossing.in_file == in_file));
+        let to_part = facet_crossings(&part, &mesh, &[0]);
+        assert_eq!(to_part.is_empty(), in_file, "{to_part:?}");
     }
 }

@@ -226,6 +226,9 @@ pub struct SelfIntersection {
     pub faces: [Option<String>; 2],
     /// Pairs of triangles that cut each other.
     pub triangle_pairs: usize,
+    /// The exact faces cross in the file, or their edges are looser than the faces are apart.
+    #[serde(default)]
+    pub in_file: bool,
 }
 
 /// A curve or point that belongs to no face.
