@@ -41,14 +41,14 @@ pub(crate) struct Approaches {
 }
 
 /// All border edges with a tree over them.
-struct Edges {
+pub(crate) struct Edges {
     /// Border and edge in it.
     of: Vec<(u32, u32)>,
     tree: BoxTree,
 }
 
 impl Edges {
-    fn new(boundaries: &Boundaries) -> Self {
+    pub fn new(boundaries: &Boundaries) -> Self {
         let mut of = Vec::new();
         let mut boxes = Vec::new();
         for (b, boundary) in boundaries.all.iter().enumerate() {
@@ -102,6 +102,32 @@ fn of_vertex(boundaries: &Boundaries, edges: &Edges, b: u32, i: usize, tolerance
             Approach { from, onto, distance }
         })
         .collect()
+}
+
+/// The places of all borders that are nearest to a point, within the tolerance, each with its distance; of a border
+/// that comes near several times, several.
+pub(crate) fn near_places(
+    boundaries: &Boundaries,
+    edges: &Edges,
+    p: DVec3,
+    tolerance: f64,
+) -> Vec<(Place, f64)> {
+    let mut near: Vec<(u32, u32, f64, f64)> = Vec::new();
+    edges.tree.meeting(Box3 { min: p, max: p }.inflated(tolerance), |e| {
+        let (border, edge) = edges.of[e as usize];
+        let [a, b] = boundaries.all[border as usize].edge(edge as usize).map(|v| boundaries.point(v));
+        let (distance, share) = segment_distance(p, a, b);
+        if distance <= tolerance {
+            near.push((border, edge, distance, share));
+        }
+    });
+    near.sort_unstable_by_key(|n| (n.0, n.1));
+    let runs = near.chunk_by(|x, y| x.0 == y.0 && x.1 + 1 == y.1);
+    let closest = runs.filter_map(|run| run.iter().min_by(|x, y| x.2.total_cmp(&y.2)));
+    let place = |&(border, edge, distance, share): &(u32, u32, f64, f64)| {
+        (Place { border, edge, share, along: along(boundaries, border, edge, share) }, distance)
+    };
+    closest.map(place).collect()
 }
 
 /// The length of a border up to a place.

@@ -1,8 +1,8 @@
-//! New vertices split their triangles; corresponding vertices move to their middle and become one.
+//! New vertices split their triangles; vertices of one site move to their middle and become one.
 
 use super::boundary::{Boundaries, sorted_sides};
 use super::closest::Place;
-use super::track::Joints;
+use super::sites::{Refused, Sites};
 use super::{MeshSewReport, SewnMesh};
 use crate::cluster::{Corner, cluster_pairs};
 use glam::DVec3;
@@ -16,6 +16,7 @@ const SAME: f64 = 0.02;
 #[derive(Debug, Default)]
 pub(crate) struct Joined {
     pub mesh: SewnMesh,
+    pub refused: Refused,
 }
 
 /// Vertices on the edges of borders: those of the mesh, and new ones.
@@ -29,22 +30,19 @@ struct Nodes<'a> {
 /// Splits and merges.
 pub(crate) fn join(
     boundaries: &Boundaries,
-    joints: &Joints,
+    sites: &Sites,
     tolerance: f64,
     report: &mut MeshSewReport,
 ) -> Joined {
-    let nodes = Nodes::new(boundaries, joints, tolerance);
+    let nodes = Nodes::new(boundaries, sites, tolerance);
     report.inserted = nodes.positions.len() - boundaries.positions.len();
-    let mut pairs: Vec<(f64, u32, u32)> = joints
-        .pairs
-        .iter()
-        .map(|p| {
-            let [a, b] = p.places.map(|place| nodes.node(place, tolerance));
-            let distance = nodes.positions[a as usize].distance(nodes.positions[b as usize]);
-            (distance, a.min(b), a.max(b))
-        })
-        .filter(|p| p.1 != p.2)
-        .collect();
+    let mut pairs = sites.merges.clone();
+    pairs.extend(sites.insertions.iter().map(|one| {
+        let (a, b) = (one.vertex, nodes.node(one.place, tolerance));
+        let distance = nodes.positions[a as usize].distance(nodes.positions[b as usize]);
+        (distance, a.min(b), a.max(b))
+    }));
+    pairs.retain(|p| p.1 != p.2);
     pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     pairs.dedup();
     let (triangles, sources) = nodes.split();
@@ -56,6 +54,15 @@ pub(crate) fn join(
         .collect();
     let apart = neighbours(&triangles, &pairs, corners.len());
     let clusters = cluster_pairs(&corners, &apart, tolerance, &pairs);
+    let is_refused = |a: u32, b: u32| clusters.of[a as usize] != clusters.of[b as usize];
+    let insertions = sites.insertions.iter();
+    let refused = Refused {
+        merges: sites.merges.iter().map(|m| [m.1, m.2]).filter(|m| is_refused(m[0], m[1])).collect(),
+        insertions: insertions
+            .filter(|one| is_refused(one.vertex, nodes.node(one.place, tolerance)))
+            .map(|one| [one.vertex, one.place.border])
+            .collect(),
+    };
     report.refused = pairs.iter().filter(|p| clusters.of[p.1 as usize] != clusters.of[p.2 as usize]).count();
     report.merged = corners.len() - clusters.all.len();
     report.largest_move = corners
@@ -75,12 +82,12 @@ pub(crate) fn join(
         .filter(|(old, new)| normal(&nodes.positions, old).dot(normal(&positions, new)) < 0.0)
         .count();
     let shells = vec![0; merged.len()];
-    Joined { mesh: SewnMesh { positions, triangles: merged, sources, shells } }
+    Joined { mesh: SewnMesh { positions, triangles: merged, sources, shells }, refused }
 }
 
 /// Per vertex of a pair, the vertices that a triangle joins it to: merging them would make the triangle
 /// vanish.
-fn neighbours(triangles: &[[u32; 3]], pairs: &[(f64, u32, u32)], count: usize) -> Vec<Vec<u32>> {
+pub(crate) fn neighbours(triangles: &[[u32; 3]], pairs: &[(f64, u32, u32)], count: usize) -> Vec<Vec<u32>> {
     let mut paired = vec![false; count];
     pairs.iter().for_each(|p| (paired[p.1 as usize], paired[p.2 as usize]) = (true, true));
     let mut apart = vec![Vec::new(); count];
@@ -94,9 +101,9 @@ fn neighbours(triangles: &[[u32; 3]], pairs: &[(f64, u32, u32)], count: usize) -
 }
 
 impl<'a> Nodes<'a> {
-    fn new(boundaries: &'a Boundaries, joints: &Joints, tolerance: f64) -> Self {
+    fn new(boundaries: &'a Boundaries, sites: &Sites, tolerance: f64) -> Self {
         let mut wanted: BTreeMap<(u32, u32), Vec<f64>> = BTreeMap::new();
-        for place in joints.pairs.iter().flat_map(|p| p.places) {
+        for place in sites.insertions.iter().map(|one| one.place) {
             wanted.entry((place.border, place.edge)).or_default().push(place.share);
         }
         let mut nodes =

@@ -6,6 +6,7 @@
 //!   closest points ([`closest`]) for every border vertex the nearest point of each border within the tolerance
 //!   tracking ([`track`])         proximities followed along both borders, without folds; vertices between two
 //!                                correspondences get theirs by length (the common reparametrisation)
+//!   sites ([`sites`])            what corresponds on all borders, however many, becomes one site
 //!   joining ([`join`])           new vertices split triangles; corresponding ones meet in their middle
 //!   shells ([`shells`])          joined meshes get a common orientation
 //! ```
@@ -19,6 +20,7 @@ mod boundary;
 mod closest;
 mod join;
 mod shells;
+mod sites;
 mod track;
 
 use crate::foot::segment_distance;
@@ -127,10 +129,35 @@ pub fn sew_mesh(
         track::Joints::default()
     };
     report.sewn = joints.stretches;
-    let joined = join::join(&boundaries, &joints, report.tolerance, &mut report);
+    let joined = join_in_attempts(&boundaries, &joints, &mut report);
     let mesh = shells::finish(joined, &mut report);
     (mesh, report)
 }
+
+/// Joins what corresponds; what would move a vertex too far, or collapse a triangle, is left out from the start in
+/// another attempt.
+fn join_in_attempts(
+    boundaries: &Boundaries,
+    joints: &track::Joints,
+    report: &mut MeshSewReport,
+) -> join::Joined {
+    let mut refused = sites::Refused::default();
+    for _ in 1..ATTEMPTS {
+        let sites = sites::Sites::new(boundaries, joints, report.tolerance, &refused);
+        let joined = join::join(boundaries, &sites, report.tolerance, report);
+        if report.refused == 0 {
+            return joined;
+        }
+        refused.merges.extend(joined.refused.merges);
+        refused.insertions.extend(joined.refused.insertions);
+    }
+    let sites = sites::Sites::new(boundaries, joints, report.tolerance, &refused);
+    join::join(boundaries, &sites, report.tolerance, report)
+}
+
+/// Attempts at joining. What is refused in one mostly leaves nothing to refuse in the next; the last one leaves it
+/// open.
+const ATTEMPTS: usize = 4;
 
 /// A border that turns by more than this (cosine) at a vertex has a corner there.
 const CORNER: f64 = 0.85;
