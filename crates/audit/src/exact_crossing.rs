@@ -7,11 +7,11 @@
 //! ```
 //!
 //! The faces cut each other if such a point lies inside both, farther from their edges than edges are off the
-//! surfaces and chords off the edges. Where surfaces only touch, the method does not converge, and no crossing is
-//! claimed.
+//! surfaces and chords off the edges. Where surfaces only touch, the method does not converge, and no
+//! crossing is claimed.
 //!
-//! Where edges are further off the surfaces than the surfaces are off each other, no mesh that follows the edges
-//! keeps its facets apart.
+//! Where edges are further off the surfaces than the surfaces are off each other, no mesh that follows the
+//! edges keeps its facets apart.
 
 use crate::chart::exact;
 use crate::precision::{ROUNDING, surface_magnitude};
@@ -30,7 +30,8 @@ const FOOT_STEPS: usize = 4;
 /// Surfaces that meet at less than this angle, in radians, touch: rounding decides whether they cross.
 const TOUCHING: f64 = 1e-4;
 
-/// A point is inside a face if it is farther from its edges than this many times what edges and chords are off.
+/// A point is inside a face if it is farther from its edges than this many times what edges and chords are
+/// off.
 const INSIDE: f64 = 2.0;
 
 /// Parameters that differ by less than this share of the parameters of the face are one point of a face that
@@ -153,8 +154,8 @@ impl<'a> Side<'a> {
         if x.is_finite() && y.is_finite() { a.0 + (b.0 - a.0) * x + (c.0 - a.0) * y } else { a.0 }
     }
 
-    /// The point of the surface under a point of the facet, by Gauss and Newton: the nearest one of all may lie on
-    /// the other side of a wall.
+    /// The point of the surface under a point of the facet, by Gauss and Newton: the nearest one of all may
+    /// lie on the other side of a wall.
     fn foot(&self, at: DVec3) -> DVec3 {
         let mut uv = self.uv;
         for _ in 0..FOOT_STEPS {

@@ -59,8 +59,8 @@ pub(crate) fn self_intersections(part: &Part, mesh: &PartMesh, faces: &[FaceId])
     crossings(part, mesh, &all).par_iter().map(describe).collect()
 }
 
-/// Every two facets of the named closed shells that cut each other, in the order of faces and facets, but for those
-/// whose faces cut each other in the file: the places at which to refine a mesh.
+/// Every two facets of the named closed shells that cut each other, in the order of faces and facets, but for
+/// those whose faces cut each other in the file: the places at which to refine a mesh.
 pub fn facet_crossings(part: &Part, mesh: &PartMesh, shells: &[u32]) -> Vec<FacetCrossing> {
     let mut found = Vec::new();
     for &shell in shells {

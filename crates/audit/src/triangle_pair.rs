@@ -85,8 +85,8 @@ pub(crate) fn cut_each_other(s: &Facet3, t: &Facet3) -> bool {
     }
 }
 
-/// A box around the points at which sides of one triangle meet the other one, up to rounding; around what their
-/// boxes have in common where both lie in one plane.
+/// A box around the points at which sides of one triangle meet the other one, up to rounding; around what
+/// their boxes have in common where both lie in one plane.
 pub(crate) fn cut_points(s: &Facet3, t: &Facet3) -> Box3 {
     let mut all = Box3::EMPTY;
     for (of, other) in [(s, t), (t, s)] {

@@ -36,7 +36,8 @@ pub(crate) struct AuditedShell {
 }
 
 /// Audits every part that is placed. What the audit proves of a face less tightly than the mesher takes the place of the
-/// mesher's own figure. A part whose facets cut each other although its faces do not is meshed again, finer there.
+/// mesher's own figure. A part whose facets cut each other although its faces do not is meshed again, finer
+/// there.
 pub(crate) fn audit_parts(
     model: &Model,
     resolved: &Resolved,
@@ -66,8 +67,8 @@ pub(crate) fn audit_parts(
         .collect()
 }
 
-/// What the audit says about a meshed part, and what the mesher claims. Where loops were untangled, the mesh is of the
-/// healed part.
+/// What the audit says about a meshed part, and what the mesher claims. Where loops were untangled, the mesh
+/// is of the healed part.
 fn audited(part: &Part, meshed: &MeshedPart, asked: &AuditOptions) -> PartAudit {
     let part = meshed.report.healed.as_deref().unwrap_or(part);
     audit_part(part, &meshed.mesh, asked, Some(&claims(meshed)))
@@ -77,8 +78,8 @@ fn claims(meshed: &MeshedPart) -> Vec<Claim> {
     meshed.report.faces.iter().map(claim).collect()
 }
 
-/// Meshes a part once more where facets cut each other and their faces do not, and takes this mesh if fewer faces cut each
-/// other and nothing else is worse.
+/// Meshes a part once more where facets cut each other and their faces do not, and takes this mesh if fewer
+/// faces cut each other and nothing else is worse.
 fn parted(
     part: &Part,
     meshed: &mut MeshedPart,
@@ -117,7 +118,8 @@ fn parted(
     audit_again
 }
 
-/// True where all faces of a shell are proven. A face without a proof has worse faults than cuts, and takes long.
+/// True where all faces of a shell are proven. A face without a proof has worse faults than cuts, and takes
+/// long.
 fn is_proven(shell: &Shell, meshed: &MeshedPart, options: &Options) -> bool {
     let is_over = |face: usize| !(meshed.report.faces[face].proven_error <= options.largest_tolerance());
     options.bound == Bound::Estimated || !shell.faces.iter().any(|face| is_over(face.index()))

@@ -110,8 +110,9 @@ impl MeshOptions {
         self
     }
 
-    /// Whether triangles of closed shells that cut each other are looked for. Where the faces do not cut each other in the
-    /// file, both are refined there until their triangles part; what cuts even so is reported. Default: yes.
+    /// Whether triangles of closed shells that cut each other are looked for. Where the faces do not cut each
+    /// other in the file, both are refined there until their triangles part; what cuts even so is reported.
+    /// Default: yes.
     pub fn with_self_intersections(mut self, look: bool) -> Self {
         self.self_intersections = look;
         self

@@ -3,6 +3,7 @@
 //! Random fans: 3 to 6 sheets around a straight or curved line, each with vertices of its own along it, moved
 //! about within the tolerance; some are cut in two along the line (T-ends), some run the other way round.
 
+use chordal_nurbs::math;
 use chordal_sew::{MeshSewReport, SewTolerance, SewnMesh, sew_mesh};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -60,12 +61,12 @@ impl Fan {
 
     /// The line, which is a curve without ever being far from straight.
     fn line(&self, x: f64) -> DVec3 {
-        DVec3::new(x, self.bend * (0.6 * x).sin(), self.bend * (0.4 * x).cos())
+        DVec3::new(x, self.bend * math::sin(0.6 * x), self.bend * math::cos(0.4 * x))
     }
 
     /// A strip of triangles from the line outwards.
     fn add_sheet(&mut self, ends: [f64; 2], inner: usize, angle: f64, random: &mut Random) {
-        let away = 5.0 * DVec3::new(0.0, angle.cos(), angle.sin());
+        let away = 5.0 * DVec3::new(0.0, math::cos(angle), math::sin(angle));
         let at = |share: f64| ends[0] + (ends[1] - ends[0]) * share;
         let first = self.positions.len() as u32;
         let mut shares = vec![0.0];

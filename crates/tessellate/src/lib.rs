@@ -10,7 +10,8 @@
 //!    round are merged, and only the faces at those edges run again.
 //! 4. Where loops cross in truth, give the model vertices there and loops that do not, and mesh it again
 //!    ([`chordal_chart::uncrossed`]).
-//! 5. Where facets cut each other and their faces do not, refine both (`parting`), if whoever calls asks for it.
+//! 5. Where facets cut each other and their faces do not, refine both (`parting`), if whoever calls asks for
+//!    it.
 //! 6. Join the faces (`orient`, `stitch`).
 //!
 //! How hard a face is tried, and in which order remedies are taken, is written down in `effort`. Other crates

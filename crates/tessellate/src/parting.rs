@@ -1,18 +1,18 @@
 //! Parting: facets that cut each other where the faces do not are refined on both sides until they part.
 //!
-//! Every facet is within the tolerance of its face. Where two faces are nearer together than that (thin walls,
-//! fillets that are nearly tangent), their facets may cut each other all the same.
+//! Every facet is within the tolerance of its face. Where two faces are nearer together than that (thin
+//! walls, fillets that are nearly tangent), their facets may cut each other all the same.
 //!
 //! 1. Whoever called finds pairs of facets that cut each other ([`FindCuts`]).
-//! 2. Around each cut both faces get a smaller tolerance ([`STEP`]), and chords of their edges that are further
-//!    off are halved.
+//! 2. Around each cut both faces get a smaller tolerance ([`STEP`]), and chords of their edges that are
+//!    further off are halved.
 //! 3. These faces are meshed again in rounds, with the neighbours whose edges became finer
 //!    ([`Pass::run_rounds`]).
 //! 4. Go on with 1 until nothing cuts, [`PARTINGS`] times at most.
 //! 5. Pairs of faces that never part are left as they were: once more from the start without them.
 //!
-//! A mesh in which another face is not proven, or that is much larger, is never taken. Not guaranteed: that faces
-//! which are apart are parted; the audit reports what still cuts.
+//! A mesh in which another face is not proven, or that is much larger, is never taken. Not guaranteed: that
+//! faces which are apart are parted; the audit reports what still cuts.
 
 use crate::closer::{Closer, box_around, meet, tolerance_within};
 use crate::edges::split_chords;
@@ -39,17 +39,17 @@ pub struct FacetCut {
 /// Finds facets of a mesh of a part that cut each other although their faces do not.
 pub type FindCuts<'f> = dyn Fn(&Part, &PartMesh) -> Vec<FacetCut> + Sync + 'f;
 
-/// How often both sides of what cuts are refined. With [`STEP`], the last tolerance is 1/4096 of the first: walls
-/// thinner than that are below what files keep.
+/// How often both sides of what cuts are refined. With [`STEP`], the last tolerance is 1/4096 of the first:
+/// walls thinner than that are below what files keep.
 const PARTINGS: usize = 6;
 
-/// The tolerance around a cut as a share of the one before. Chords become half as long by it. A larger share needs
-/// more rounds, each with a search of the whole part; a smaller one makes more triangles than needed. Steps by the
-/// distance of the faces from each other were tried: they need more triangles and part fewer.
+/// The tolerance around a cut as a share of the one before. Chords become half as long by it. A larger share
+/// needs more rounds, each with a search of the whole part; a smaller one makes more triangles than needed.
+/// Steps by the distance of the faces from each other were tried: they need more triangles and part fewer.
 const STEP: f64 = 0.25;
 
-/// Parting may add this many triangles for each one there is, and some more. Where it takes more, the faces touch
-/// along lines or areas, and no refinement parts them.
+/// Parting may add this many triangles for each one there is, and some more. Where it takes more, the faces
+/// touch along lines or areas, and no refinement parts them.
 const MORE_TRIANGLES: (usize, usize) = (1, 2_000);
 
 /// Halvings of the chords around one cut: as many as [`STEP`] ever needs for a smooth curve, and some more.
@@ -123,8 +123,8 @@ impl<'a> Parting<'_, 'a, '_> {
         (now, still)
     }
 
-    /// Sets smaller tolerances around cuts and halves chords that are further off; returns the faces to be meshed
-    /// again.
+    /// Sets smaller tolerances around cuts and halves chords that are further off; returns the faces to be
+    /// meshed again.
     fn tighten(&mut self, edges: &mut [EdgeSamples], cuts: &[FacetCut]) -> Vec<usize> {
         let job = self.pass.job;
         let mut places: Vec<(usize, Closer)> = Vec::new();

@@ -37,7 +37,8 @@ pub(crate) struct Pass<'j, 'a> {
     /// Of every face: the default meshes it and its edges, in place of the methods of the options. None: no
     /// face.
     by_default: Option<(Options, Vec<bool>)>,
-    /// Of every face, the places at which its facets must keep a smaller tolerance; empty where no face has any.
+    /// Of every face, the places at which its facets must keep a smaller tolerance; empty where no face has
+    /// any.
     pub closer: Vec<Vec<Closer>>,
 }
 

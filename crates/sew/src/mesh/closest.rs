@@ -104,8 +104,8 @@ fn of_vertex(boundaries: &Boundaries, edges: &Edges, b: u32, i: usize, tolerance
         .collect()
 }
 
-/// The places of all borders that are nearest to a point, within the tolerance, each with its distance; of a border
-/// that comes near several times, several.
+/// The places of all borders that are nearest to a point, within the tolerance, each with its distance; of a
+/// border that comes near several times, several.
 pub(crate) fn near_places(
     boundaries: &Boundaries,
     edges: &Edges,

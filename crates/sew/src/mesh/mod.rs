@@ -134,8 +134,8 @@ pub fn sew_mesh(
     (mesh, report)
 }
 
-/// Joins what corresponds; what would move a vertex too far, or collapse a triangle, is left out from the start in
-/// another attempt.
+/// Joins what corresponds; what would move a vertex too far, or collapse a triangle, is left out from the
+/// start in another attempt.
 fn join_in_attempts(
     boundaries: &Boundaries,
     joints: &track::Joints,
@@ -155,8 +155,8 @@ fn join_in_attempts(
     join::join(boundaries, &sites, report.tolerance, report)
 }
 
-/// Attempts at joining. What is refused in one mostly leaves nothing to refuse in the next; the last one leaves it
-/// open.
+/// Attempts at joining. What is refused in one mostly leaves nothing to refuse in the next; the last one
+/// leaves it open.
 const ATTEMPTS: usize = 4;
 
 /// A border that turns by more than this (cosine) at a vertex has a corner there.

@@ -228,8 +228,8 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// The closest of the places of a border that are near each other; none where the site has a vertex of the
-    /// border there.
+    /// The closest of the places of a border that are near each other; none where the site has a vertex of
+    /// the border there.
     fn one_each(&self, border: u32, mut places: Vec<Insertion>, members: &[u32]) -> Vec<Insertion> {
         let has_vertex = |along: f64| {
             members
