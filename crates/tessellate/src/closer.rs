@@ -11,13 +11,8 @@ pub(crate) struct Closer {
 
 /// The tolerance for something within a box, where `otherwise` holds elsewhere.
 pub(crate) fn tolerance_within(places: &[Closer], bounds: &Box3, otherwise: f64) -> f64 {
-    let here = places.iter().filter(|place| meet(&place.bounds, bounds));
+    let here = places.iter().filter(|place| place.bounds.meets(bounds));
     here.fold(otherwise, |least, place| least.min(place.tolerance))
-}
-
-/// True where two boxes have a point in common.
-pub(crate) fn meet(a: &Box3, b: &Box3) -> bool {
-    a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
 }
 
 /// The smallest box around the corners of a facet or the ends of a chord.

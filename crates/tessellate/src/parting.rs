@@ -14,7 +14,7 @@
 //! A mesh in which another face is not proven, or that is much larger, is never taken. Not guaranteed: that
 //! faces which are apart are parted; the audit reports what still cuts.
 
-use crate::closer::{Closer, box_around, meet, tolerance_within};
+use crate::closer::{Closer, box_around, tolerance_within};
 use crate::edges::split_chords;
 use crate::face_result::FaceResult;
 use crate::part_job::PartJob;
@@ -177,7 +177,7 @@ fn halve_chords(job: &PartJob<'_>, edges: &mut [EdgeSamples], edge: usize, place
             sag > place.tolerance
                 && sag.is_finite()
                 && a.distance(b) > job.resolution
-                && meet(&box_around(&[a, b]).inflated(sag), &place.bounds)
+                && box_around(&[a, b]).inflated(sag).meets(&place.bounds)
         };
         let chords: Vec<u32> = (0..samples.sag.len() as u32).filter(is_coarse).collect();
         if chords.is_empty() {
