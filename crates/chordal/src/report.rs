@@ -348,6 +348,9 @@ pub struct FaceEntry {
     pub bound: String,
     /// The fewest triangles that the tolerance allows.
     pub lower_bound: f64,
+    /// The area of its triangles in mm², in the placement with the largest scale.
+    #[serde(default)]
+    pub area: f64,
 }
 
 /// One method of the mesher.

@@ -1,6 +1,7 @@
 //! The faces of a part: what became of each, its proof and its gap.
 
 use super::Entry;
+use crate::area::face_area;
 use crate::names::face_kind;
 use crate::placement::PartUse;
 use crate::report::*;
@@ -10,9 +11,14 @@ use chordal_tessellate::FaceReport;
 /// Adds every face of a part. `rounding`: how far placing and writing may move a vertex, in millimetres.
 pub(super) fn add_faces(report: &mut Report, entry: &Entry<'_>, rounding: f64) {
     let missing = FaceReport::default();
+    let scale = entry.part_use.scale;
     for (index, face) in entry.part.faces.iter().enumerate() {
         let of_face = entry.meshed.report.faces.get(index).unwrap_or(&missing);
         add_face(report, entry, face, &with_moves(entry, index, of_face), rounding);
+        let mesh = &entry.meshed.mesh;
+        if let (Some(entry), Some(face)) = (report.faces_detail.last_mut(), mesh.faces.get(index)) {
+            entry.area = scale * scale * face_area(face, &mesh.positions);
+        }
     }
 }
 
@@ -92,6 +98,7 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
         gap: known(gap),
         bound: of_face.bound.into(),
         lower_bound: of_face.lower_bound,
+        area: 0.0,
     });
 }
 
