@@ -5,7 +5,8 @@
 //!
 //! 1. Rounds 0 to 2: a chord whose bound is far beyond the tolerance is examined in parts. If the parts are
 //!    fine, points inside the face are tried before the chord is made finer.
-//! 2. From round 3 on such a chord is made finer at once ([`Remedy::FinerChords`]).
+//! 2. From round 3 on such a chord is made finer at once, and with a chord that folds a facet all chords of
+//!    its edge that are as coarse ([`Remedy::FinerChords`]).
 //! 3. From round 6 on loops that still cross are meshed as they are ([`Remedy::CrossingLoops`]).
 //! 4. In round 8, the last one, whatever is still too coarse is accepted and reported ([`Remedy::AsItIs`]).
 //!
@@ -27,7 +28,8 @@ use chordal_brep::MeshIssue;
 /// What an attempt may do beyond the first one, in the order in which it is resorted to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Remedy {
-    /// Chords with bounds far beyond the tolerance are made finer without trying points inside first.
+    /// Chords with bounds far beyond the tolerance are made finer without trying points inside first, and
+    /// chords that fold facets together with those of their edge that are as coarse.
     FinerChords,
     /// The face is not cut along the creases of its surface.
     UncutCreases,

@@ -146,9 +146,13 @@ impl<'a> Prover<'a> {
             queue.errors[t as usize] = error;
             match fault {
                 None => continue,
-                Some(Fault::Edge(_)) if self.accepts() => continue,
+                Some(Fault::Edge(_) | Fault::FoldingEdge(_)) if self.accepts() => continue,
                 // 2. and 3. Chords that are too coarse.
                 Some(Fault::Edge(i)) => requests.add(self.boundary_segment(face, t, i))?,
+                Some(Fault::FoldingEdge(i)) if self.effort.has(Remedy::FinerChords) => {
+                    requests.add_alike(face, self.boundary_segment(face, t, i))?;
+                }
+                Some(Fault::FoldingEdge(i)) => requests.add(self.boundary_segment(face, t, i))?,
                 Some(Fault::Inside(_) | Fault::Fold(_)) if !requests.is_empty() => continue,
                 Some(_) if steps > most_steps && self.accepts() => continue,
                 Some(_) if steps > most_steps => return Err(Setback::Stuck),

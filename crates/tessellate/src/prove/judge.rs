@@ -34,6 +34,8 @@ const NORMALS_AGREE: f64 = 0.3;
 pub(crate) enum Fault {
     /// The edge opposite this corner is too long for this face, whatever is done inside.
     Edge(usize),
+    /// As `Edge`, for a facet that the chord folds: other chords as coarse as this one fold other facets.
+    FoldingEdge(usize),
     /// Too far from the surface, or turning too much across the edge opposite the corner.
     Inside(Option<usize>),
     /// Turned over where it meets the boundary; its longest inner edge lies opposite the corner.
@@ -164,7 +166,7 @@ impl Prover<'_> {
         // inner edge leaves the face.
         let leaves = |i: usize| facet.sag[i].or_else(|| boundary[i].then(|| bend(face, facet, i)));
         let coarse = (0..3).find(|&i| leaves(i).is_some_and(|bend| bend > CHORD_BENDS * height));
-        Some(coarse.map_or_else(|| Fault::Fold(longest_inner(face, t, facet)), Fault::Edge))
+        Some(coarse.map_or_else(|| Fault::Fold(longest_inner(face, t, facet)), Fault::FoldingEdge))
     }
 
     /// An edge that turns further, or is longer, than allowed.

@@ -1,7 +1,12 @@
 //! Chords of edges that a face asks to be made finer.
 
 use crate::effort::Setback;
+use crate::face_mesh::FaceMesh;
 use chordal_chart::Segment;
+
+/// Chords with this share of the sagitta of another one are as coarse as that one: chords of equal length on a
+/// circle differ by rounding, and by half where one of them is halved already.
+const ALIKE: f64 = 0.5;
 
 /// Chords by edge and index.
 #[derive(Debug, Default)]
@@ -24,6 +29,22 @@ impl ChordRequests {
         match segment {
             Some(Segment::Edge { edge, chord }) => self.push((edge, chord)),
             _ => return Err(Setback::CoarseSeam),
+        }
+        Ok(())
+    }
+
+    /// Adds the chord of this segment, and all chords of its edge that are as far from the edge as this one.
+    /// Facets fold one after the other over chords of one length: requests for one chord at a time would take
+    /// a round for each.
+    ///
+    /// # Errors
+    /// As [`ChordRequests::add`].
+    pub fn add_alike(&mut self, face: &FaceMesh<'_, '_>, segment: Option<Segment>) -> Result<(), Setback> {
+        self.add(segment)?;
+        if let Some(Segment::Edge { edge, chord }) = segment {
+            let sag = &face.edge_samples(edge).sag;
+            let least = ALIKE * sag[chord as usize];
+            self.0.extend((0..sag.len()).filter(|&k| sag[k] >= least).map(|k| (edge, k as u32)));
         }
         Ok(())
     }
