@@ -12,7 +12,7 @@ from sweep_ours import Run
 AGREE = 0.01
 # A face differs when its area is off by this much of itself and by that much of the whole area.
 FACE_ITSELF, FACE_OF_WHOLE = 0.05, 1e-3
-# Seconds of wall time.
+# Seconds of the processor.
 SLOW = 20.0
 
 
@@ -29,10 +29,17 @@ class Verdict:
     box_difference: float | None = None
     differing: list[str] = field(default_factory=list)
     no_faces: bool = False
+    finer: Run | None = None
 
     @property
     def name(self) -> str:
         return self.entry.name
+
+    @property
+    def differs(self) -> bool:
+        """A measure differs from theirs."""
+        ratios = (self.area_ratio, self.volume_ratio)
+        return any(map(off, ratios)) or (self.box_difference or 0.0) > AGREE or bool(self.differing)
 
     @property
     def clean(self) -> bool:
@@ -45,8 +52,9 @@ class Verdict:
         return "; ".join(self.kinds) or "clean"
 
 
-def judge(entry: Entry, ours: Run, theirs: dict) -> Verdict:
-    verdict = Verdict(entry, ours, theirs)
+def judge(entry: Entry, ours: Run, theirs: dict, finer: Run | None = None) -> Verdict:
+    """`finer`: a mesh with a smaller tolerance, which is compared in place of the first one."""
+    verdict = Verdict(entry, ours, theirs, finer=finer if finer and finer.report else None)
     if ours.exit == 2 and not theirs.get("faces"):
         verdict.no_faces = True
         return verdict
@@ -86,7 +94,7 @@ def of_shells(ours: Run, theirs: dict) -> list[str]:
 
 
 def compare(verdict: Verdict) -> None:
-    ours, theirs = verdict.ours, verdict.theirs
+    ours, theirs = verdict.finer or verdict.ours, verdict.theirs
     verdict.area_ratio = ratio(ours.area, theirs.get("area"))
     if off(verdict.area_ratio):
         verdict.kinds.append(f"area {verdict.area_ratio:.4g}")
@@ -111,7 +119,8 @@ def off(value: float | None) -> bool:
 
 
 def compare_boxes(verdict: Verdict) -> None:
-    box, low, high = verdict.theirs.get("box"), verdict.ours.low, verdict.ours.high
+    ours = verdict.finer or verdict.ours
+    box, low, high = verdict.theirs.get("box"), ours.low, ours.high
     if not box or not low:
         return
     diagonal = math.dist(box[:3], box[3:])

@@ -11,7 +11,7 @@ from pathlib import Path
 from sweep_judge import SLOW, Verdict
 
 COLUMNS = (
-    "repository path bytes exporter verdict exit seconds megabytes faces their_faces area their_area area_ratio volume_ratio "
+    "repository path bytes exporter verdict finer exit seconds megabytes faces their_faces area their_area area_ratio volume_ratio "
     "box_difference closed_shells leaking crossing_pairs differing_faces their_invalid message"
 ).split()
 
@@ -35,6 +35,7 @@ def line(v: Verdict) -> list[object]:
         report.get("input", {}).get("bytes"),
         v.entry.exporter,
         v.words,
+        "finer" if v.finer else "",
         v.ours.exit,
         v.ours.seconds,
         v.ours.memory / 2**20,
@@ -92,6 +93,7 @@ def totals(verdicts: Sequence[Verdict], with_faces: Sequence[Verdict], tolerance
         f"| faces, triangles | {total(with_faces, 'faces', 'total'):,}, {total(with_faces, 'triangles'):,} |",
         f"| area compared | {len(compared)} |",
         f"| area within 1 % | {sum(abs(v.area_ratio - 1) <= 0.01 for v in compared)} |",
+        f"| compared by a finer mesh, since the first one differed | {sum(v.finer is not None for v in with_faces)} |",
         f"| volume compared | {sum(v.volume_ratio is not None for v in with_faces)} |",
         f"| volume within 1 % | {sum(v.volume_ratio is not None and abs(v.volume_ratio - 1) <= 0.01 for v in with_faces)} |",
         f"| box compared | {sum(v.box_difference is not None for v in with_faces)} |",
