@@ -18,7 +18,7 @@ from pathlib import Path
 
 from brep_text import Brep
 from iges_text import Iges
-from part21 import Point, Step, Use, cross, flag, refs, unit, write_sheet, write_solid
+from part21 import Point, Step, Use, cross, flag, real, refs, unit, write_sheet, write_solid
 
 FOLDER = Path(__file__).resolve().parent.parent / "region"
 TAU = 2 * math.pi
@@ -520,6 +520,79 @@ def no_radius(rng: random.Random | None) -> Model:
     return "", math.pi * r * r, write
 
 
+def fillet(rng: random.Random | None) -> Model:
+    """An eighth of a thin tube: at a tolerance of about its radius, chords of its rims fold facets."""
+    big, r = (rng.uniform(10, 40), 1.5) if rng else (31.25, 1.5)
+    return sheet(lambda: [Band(torus(big, r), -math.pi / 2, -math.pi / 4, (-math.pi / 2, -math.pi / 4))], rng)
+
+
+def horn_wedge(rng: random.Random | None) -> Model:
+    """A wedge of a torus whose radii differ by rounding alone, between two circles through its pole."""
+    r = rng.uniform(1, 40) if rng else 1.0
+    u0, u1 = (0.3, 0.3 + (rng.uniform(0.2, 6.0) if rng else math.pi / 2))
+    ring = torus(r, r)
+
+    def write(path: Path) -> None:
+        s = Step(path.stem)
+        f = turned(rng)
+
+        def half(u: float, near: bool) -> str:
+            """From the pole to the equator, or from there to the pole."""
+            pole, far = f.o, ring.point(f, u, 0)
+            tangent = f.along(math.sin(u), -math.cos(u), 0)
+            curve = s.circle(f.at(r * math.cos(u), r * math.sin(u), 0), tangent, f.along(math.cos(u), math.sin(u), 0), r)
+            return s.edge(pole, far, curve) if near else s.edge(far, pole, curve)
+
+        uses = [(half(u1, True), True), (half(u1, False), True), (half(u0, False), False), (half(u0, True), False)]
+        spindle = s.elementary("TOROIDAL_SURFACE", f.o, f.z, f.x, r, r * (1 + 3e-16))
+        write_sheet(s, [s.face([s.bound(s.loop(uses), outer=True)], spindle)], path)
+
+    return "", (u1 - u0) * TAU * r * r, write
+
+
+def offset_revolved(rng: random.Random | None) -> Model:
+    """A band of a lemon torus, as the offset of the surface that turns a smaller circle."""
+    r = rng.uniform(10, 40) if rng else 51.0
+    big = -r * (rng.uniform(0.05, 0.4) if rng else 0.4)
+    d = r * (rng.uniform(0.01, 0.2) if rng else 0.1)
+    ring = torus(big, r)
+    a, b = -0.4, 0.6
+
+    def write(path: Path) -> None:
+        s = Step(path.stem)
+        f = turned(rng)
+        profile = s.circle(f.at(big, 0, 0), [-c for c in f.y], f.x, r - d)
+        swept = s.add(f"SURFACE_OF_REVOLUTION('',{profile},{s.axis(f.o, f.z)})")
+        offset = s.add(f"OFFSET_SURFACE('',{swept},{real(d)},.F.)")
+        bounds = [
+            s.bound(s.loop([parallel(s, f, ring, a, 0, TAU)]), outer=True),
+            s.bound(s.loop([parallel(s, f, ring, b, TAU, 0)])),
+        ]
+        write_sheet(s, [s.face(bounds, offset)], path)
+
+    return "", TAU * (ring.area(b) - ring.area(a)), write
+
+
+def offset_extruded(rng: random.Random | None) -> Model:
+    """A tube, as the offset of an extruded circle."""
+    r, h = (rng.uniform(2, 20), rng.uniform(2, 20)) if rng else (11.0, 20.0)
+    ring = cylinder(r)
+
+    def write(path: Path) -> None:
+        s = Step(path.stem)
+        f = turned(rng)
+        along = s.add(f"VECTOR('',{s.direction(f.z)},1.)")
+        swept = s.add(f"SURFACE_OF_LINEAR_EXTRUSION('',{s.circle(f.o, f.z, f.x, 0.9 * r)},{along})")
+        offset = s.add(f"OFFSET_SURFACE('',{swept},{real(0.1 * r)},.F.)")
+        bounds = [
+            s.bound(s.loop([parallel(s, f, ring, 0, 0, TAU)]), outer=True),
+            s.bound(s.loop([parallel(s, f, ring, h, TAU, 0)])),
+        ]
+        write_sheet(s, [s.face(bounds, offset)], path)
+
+    return "", TAU * r * h, write
+
+
 def band_iges(path: Path, kind: int, sizes: tuple[float, ...], ring: Ring, span: tuple[float, float]) -> None:
     """A band of a torus (198) or a sphere (196) between two circles without curves of parameters."""
     g = Iges()
@@ -572,6 +645,10 @@ KINDS: dict[str, tuple[str, Callable[[random.Random | None], Model]]] = {
     "sphere_huge": ("a small patch of a sphere with a radius of 1e10 mm", huge),
     "curve_bounded_scattered": ("CURVE_BOUNDED_SURFACE with pieces in any order", scattered),
     "cylinder_without_radius": ("a cylinder with a radius of zero", no_radius),
+    "fillet_thin": ("an eighth of a thin tube, for coarse tolerances", fillet),
+    "torus_horn_rounded": ("a wedge of a torus whose radii differ by rounding", horn_wedge),
+    "offset_revolved": ("the offset of a revolved circle that passes the axis", offset_revolved),
+    "offset_extruded": ("the offset of an extruded circle", offset_extruded),
     "edge_without_length": ("an edge of no length and one that runs back over its neighbour", no_length),
 }
 

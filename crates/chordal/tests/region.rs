@@ -57,3 +57,15 @@ fn a_face_without_area_is_listed_and_the_solid_is_watertight() {
     assert_eq!(report.faces.zero_area, 1);
     assert_eq!((report.shells.closed, report.shells.leaking), (1, 0));
 }
+
+/// A fillet about as wide as the tolerance: chords of its rims that fold facets are made finer together, else
+/// they take more rounds than there are.
+#[test]
+fn a_fillet_is_proven_at_every_coarse_tolerance() {
+    let model = Model::open(folder().join("fillet_thin.step")).expect("a model");
+    for tolerance in [0.6, 0.75, 0.914_162_843_853_344_6, 1.0, 1.2] {
+        let options = MeshOptions::default().with_tolerance(Tolerance::Millimetres(tolerance));
+        let report = Mesher::new(options).mesh(&model).expect("a mesh").into_report();
+        assert!(report.clean, "{tolerance} mm: {:?}", report.error_sentences());
+    }
+}

@@ -110,6 +110,7 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
     let bytes = if format.is_text(&bytes) { encoding::as_utf8(bytes) } else { bytes };
     let mut model = format.read(&bytes, options)?;
     settle_surfaces::make_sizes_positive(&mut model);
+    settle_surfaces::turn_offset_profiles(&mut model);
     settle_surfaces::leave_out_still_spans(&mut model);
     flat_caps::make_planes_of_caps(&mut model);
     folds::close_folds(&mut model);

@@ -5,6 +5,8 @@
 //! of the formulas of [`Surface`]. Here each face gets an equal surface with positive sizes, and with it its
 //! curves in parameter space and its sense.
 //!
+//! Offsets of surfaces of revolution become surfaces of revolution.
+//!
 //! A spindle torus has two parts that meet at its poles. A face lies on one of them: the one that its edges
 //! lie on.
 
@@ -54,11 +56,34 @@ fn form(part: &Part, face: &Face) -> Option<PositiveSurface> {
     surface.with_positive_sizes().or_else(|| {
         let inner = surface.inner_part()?;
         let points = boundary_points(part, face);
-        let distance = |surface: &Surface| {
-            points.iter().map(|&p| surface.point(surface.invert(p, None)).distance(p)).sum::<f64>()
-        };
-        (distance(&inner.surface) < distance(surface)).then_some(inner)
+        (distance(&inner.surface, &points) < distance(surface, &points)).then_some(inner)
     })
+}
+
+/// The sum of the distances of points from a surface.
+fn distance(surface: &Surface, points: &[DVec3]) -> f64 {
+    points.iter().map(|&p| surface.point(surface.invert(p, None)).distance(p)).sum()
+}
+
+/// Gives every face on the offset of a surface of revolution the surface of revolution that it lies on: for
+/// that there are bounds. The parameters are the same.
+pub(crate) fn turn_offset_profiles(model: &mut Model) {
+    for part in &mut model.parts {
+        let turned: Vec<Option<Surface>> = part.faces.iter().map(|face| turned_offset(part, face)).collect();
+        for (face, surface) in part.faces.iter_mut().zip(turned) {
+            if let Some(surface) = surface {
+                face.geometry = FaceGeometry::Surface(Arc::new(surface));
+            }
+        }
+    }
+}
+
+fn turned_offset(part: &Part, face: &Face) -> Option<Surface> {
+    let FaceGeometry::Surface(surface) = &face.geometry else { return None };
+    let [one, other] = surface.offset_revolutions()?;
+    let points = boundary_points(part, face);
+    let is_nearer = |a: &Surface, b: &Surface| distance(a, &points) <= distance(b, &points);
+    Some(if is_nearer(&one, &other) { one } else { other })
 }
 
 fn boundary_points(part: &Part, face: &Face) -> Vec<DVec3> {

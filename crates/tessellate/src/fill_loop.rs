@@ -189,7 +189,9 @@ fn judge_all(face: &FaceMesh<'_, '_>, prover: &mut Prover<'_>) -> Result<Judged,
         match fault {
             None => {}
             Some(Fault::Edge(_) | Fault::FoldingEdge(_)) if prover.accepts() => {}
-            Some(Fault::Edge(i) | Fault::FoldingEdge(i)) => seam = seam.and(chords.add(prover.boundary_segment(face, t, i))),
+            Some(Fault::Edge(i) | Fault::FoldingEdge(i)) => {
+                seam = seam.and(chords.add(prover.boundary_segment(face, t, i)))
+            }
             Some(Fault::Inside(_) | Fault::Fold(_)) => {
                 let [a, b, c] = face.mesh().corners(t);
                 judged.coarse.push((a + b + c) / 3.0);

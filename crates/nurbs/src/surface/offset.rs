@@ -2,12 +2,12 @@
 
 use crate::curve::unit_jet;
 use crate::math;
-use crate::{Surface, SurfaceJet, UvBox};
+use crate::{Curve, Surface, SurfaceJet, UvBox};
 use glam::{DVec2, DVec3};
 
 impl Surface {
-    /// The surface with offsets of elementary surfaces, and offsets of offsets, replaced by the exact surface
-    /// of the same parameters; everything else as it is.
+    /// The surface with offsets of elementary and extruded surfaces, and offsets of offsets, replaced by the
+    /// exact surface of the same parameters; everything else as it is.
     pub fn simplified(self) -> Surface {
         let Surface::Offset { basis, distance } = self else { return self };
         let basis = basis.simplified();
@@ -24,6 +24,26 @@ impl Surface {
                 basis => Surface::Offset { basis: Box::new(basis), distance },
             },
         }
+    }
+}
+
+/// Sines of angles, and distances as parts of the size, that are rounding of the numbers in a file.
+const IN_PLANE: f64 = 1e-12;
+
+impl Surface {
+    /// The two surfaces of revolution that an offset of one may be, with the same parameters: the profile moved
+    /// to either side in its plane, which holds the axis. On a face that keeps to one side of the axis, the
+    /// offset is one of them, since its normal turns over where the profile passes the axis. `None` for other
+    /// surfaces.
+    pub fn offset_revolutions(&self) -> Option<[Surface; 2]> {
+        let Surface::Offset { basis, distance } = self else { return None };
+        let Surface::Revolution { profile, axis_origin, axis } = basis.as_ref() else { return None };
+        let across = across_meridian(profile, *axis_origin, *axis)?;
+        Some([across, -across].map(|across| Surface::Revolution {
+            profile: parallel(profile, *distance, across),
+            axis_origin: *axis_origin,
+            axis: *axis,
+        }))
     }
 }
 
@@ -57,8 +77,60 @@ fn moved(basis: &Surface, distance: f64) -> Option<Surface> {
         {
             Some(Surface::Torus { frame: *frame, major: *major, minor: minor + distance })
         }
+        // The normal is c' × d.
+        Surface::Extrusion { profile, direction } => Some(Surface::Extrusion {
+            profile: parallel(profile, distance, *direction),
+            direction: *direction,
+        }),
         _ => None,
     }
+}
+
+/// The curve at `distance` from another one along tangent × `reference`, with the same parameters.
+fn parallel(curve: &Curve, distance: f64, reference: DVec3) -> Curve {
+    let general = || Curve::Offset { basis: Box::new(curve.clone()), distance, reference };
+    match curve {
+        Curve::Line { origin, direction } => match direction.cross(reference).try_normalize() {
+            Some(side) => Curve::Line { origin: origin + side * distance, direction: *direction },
+            None => general(),
+        },
+        Curve::Circle { frame, radius } if is_along(reference, frame.z) => {
+            let radius = radius + distance * reference.dot(frame.z).signum();
+            if radius > 0.0 { Curve::Circle { frame: *frame, radius } } else { general() }
+        }
+        _ => general(),
+    }
+}
+
+/// The direction across the plane of a curve and an axis; `None` where they lie in no common plane.
+fn across_meridian(curve: &Curve, axis_origin: DVec3, axis: DVec3) -> Option<DVec3> {
+    let off_axis = |p: DVec3| axis.cross(p - axis_origin);
+    let is_in_plane = |across: DVec3, points: &[DVec3]| {
+        let size = points.iter().fold(0.0f64, |size, &p| size.max(p.distance(axis_origin)));
+        points.iter().all(|&p| (p - axis_origin).dot(across).abs() <= IN_PLANE * size)
+    };
+    let (across, points) = match curve {
+        Curve::Circle { frame, .. } => (frame.z, vec![frame.origin]),
+        Curve::Line { origin, direction } => {
+            let points = vec![*origin, origin + *direction];
+            (points.iter().copied().map(off_axis).max_by(longer)?, points)
+        }
+        Curve::Nurbs(curve) => {
+            let points: Vec<DVec3> = curve.points().to_vec();
+            (points.iter().copied().map(off_axis).max_by(longer)?, points)
+        }
+        _ => return None,
+    };
+    let across = across.try_normalize()?;
+    (across.dot(axis).abs() <= IN_PLANE * axis.length() && is_in_plane(across, &points)).then_some(across)
+}
+
+fn longer(a: &DVec3, b: &DVec3) -> std::cmp::Ordering {
+    a.length_squared().total_cmp(&b.length_squared())
+}
+
+fn is_along(a: DVec3, b: DVec3) -> bool {
+    a.cross(b).length() <= IN_PLANE * a.length() * b.length()
 }
 
 /// The unit normal with its first derivatives by u and by v.

@@ -17,11 +17,16 @@
 //!
 //! A torus with −r < R < 0 keeps its negative major radius: it is the *lemon*, the inner part of a spindle
 //! torus, as R with 0 < R < r is the *apple*, its outer part. Both are the points with R + r cos v ≥ 0.
+//! Where R and r differ by rounding alone, the torus is the *horn* with R = r.
 
 use crate::math;
 use crate::{Frame, Surface};
 use glam::DVec2;
 use std::f64::consts::PI;
+
+/// Radii of a torus that differ by less than this part of them are one number that was rounded: the torus
+/// touches its axis, and does not pass it by a spindle of no size. A larger value would move faces.
+const ROUNDED_RADII: f64 = 1e-12;
 
 /// A surface with positive sizes, and what became of the parameters and of the normal.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +133,12 @@ fn positive_torus(frame: &Frame, major: f64, minor: f64) -> Option<PositiveSurfa
         let Some(form) = positive_torus(frame, major, -minor) else { return Some(moved) };
         return Some(PositiveSurface { shift: form.parameters(moved.shift), ..form });
     }
-    (major < 0.0 && -major >= minor).then(|| turned_torus(frame, major, minor))
+    if major < 0.0 && -major >= minor {
+        return Some(turned_torus(frame, major, minor));
+    }
+    let horn = Surface::Torus { frame: *frame, major: minor, minor };
+    let is_rounded = major < minor && minor - major <= ROUNDED_RADII * minor;
+    is_rounded.then(|| PositiveSurface::same_parameters(horn))
 }
 
 /// R e + r (cos v e + sin v z) = −R e' + r (cos (π − v) e' + sin (π − v) z), e' = −e.
@@ -172,6 +182,7 @@ mod tests {
             Surface::Torus { frame, major: -5.0, minor: 2.0 },
             Surface::Torus { frame, major: -5.0, minor: -2.0 },
             Surface::Torus { frame, major: -1.0, minor: -2.0 },
+            Surface::Torus { frame, major: 2.0, minor: 2.000_000_000_000_000_4 },
         ];
         for surface in surfaces {
             let form = surface.with_positive_sizes().expect("another form");

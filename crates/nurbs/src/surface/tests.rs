@@ -149,10 +149,21 @@ fn moved_surfaces_keep_their_kind() {
 }
 
 #[test]
-fn offsets_of_elementary_surfaces_are_elementary() {
+fn offsets_of_elementary_and_extruded_surfaces_are_exact() {
     let mut random = Random(5);
     for (name, surface, uv) in fixtures::surfaces() {
-        let elementary = ["plane", "cylinder", "cone", "narrowing cone", "sphere", "torus"].contains(&name);
+        let exact_form = [
+            "plane",
+            "cylinder",
+            "cone",
+            "narrowing cone",
+            "sphere",
+            "torus",
+            "extrusion",
+            "tube",
+            "slanted tube",
+        ];
+        let elementary = exact_form.contains(&name);
         for distance in [0.3, -0.4] {
             let inner = Surface::Offset { basis: Box::new(surface.clone()), distance: 0.1 };
             let offset = Surface::Offset { basis: Box::new(inner), distance };
@@ -164,4 +175,33 @@ fn offsets_of_elementary_surfaces_are_elementary() {
             }
         }
     }
+}
+
+#[test]
+fn offsets_of_surfaces_of_revolution_are_surfaces_of_revolution() {
+    let across = Frame::new(DVec3::new(3.0, 0.0, 1.0), DVec3::Y, DVec3::X);
+    let points = vec![DVec3::new(1.0, 0.0, 0.0), DVec3::new(2.0, 0.0, 1.0), DVec3::new(4.0, 0.0, 1.0)];
+    let spline = NurbsCurve::new(2, vec![0., 0., 0., 1., 1., 1.], points, None).expect("a spline");
+    let profiles = [
+        Curve::Circle { frame: across, radius: 2.0 },
+        // Passes the axis.
+        Curve::Circle { frame: across, radius: 5.0 },
+        Curve::Line { origin: DVec3::new(2.0, 0.0, 0.0), direction: DVec3::new(1.0, 0.0, 2.0) },
+        Curve::Nurbs(spline),
+    ];
+    for profile in profiles {
+        let basis = Surface::Revolution { profile, axis_origin: DVec3::ZERO, axis: DVec3::Z };
+        for distance in [0.3, -0.4] {
+            let offset = Surface::Offset { basis: Box::new(basis.clone()), distance };
+            let forms = offset.offset_revolutions().expect("profiles in the plane of the axis");
+            for at in [DVec2::new(0.3, 0.2), DVec2::new(1.3, 0.9), DVec2::new(2.0, 0.5)] {
+                let p = offset.point(at);
+                let nearest = forms.iter().map(|form| form.point(at).distance(p)).fold(f64::MAX, f64::min);
+                assert!(nearest < 1e-12, "{basis:?} by {distance} at {at}: {nearest}");
+            }
+        }
+    }
+    let skew = Curve::Line { origin: DVec3::X, direction: DVec3::new(0.0, 1.0, 1.0) };
+    let basis = Surface::Revolution { profile: skew, axis_origin: DVec3::ZERO, axis: DVec3::Z };
+    assert_eq!(Surface::Offset { basis: Box::new(basis), distance: 0.3 }.offset_revolutions(), None);
 }
