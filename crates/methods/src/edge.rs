@@ -21,7 +21,8 @@ use chordal_tessellate::Trace;
 use chordal_tessellate::method::{EdgePiece, EdgeUse, TURN_LENGTH};
 use curve::TrimmingCurve;
 
-/// The share of the tolerance that curves get where the rest is left to simplification; γ of the document.
+/// The share of the tolerance for the approximation of curves where simplification uses the rest; γ of the
+/// document.
 pub(crate) const CURVE_SHARE: f64 = 0.75;
 
 /// How the distance between a curve in space and its chord is measured.
@@ -160,8 +161,8 @@ fn increasing(mut found: Vec<f64>, range: Range) -> Vec<f64> {
     kept
 }
 
-/// A chord shorter than this share of itself and the next one is left out: two faces nearly agree on a vertex
-/// there.
+/// A chord shorter than this share of its length plus that of the next chord is merged with its neighbour:
+/// two faces have nearly the same vertex there.
 const SLIVER: f64 = 0.05;
 
 fn without_slivers(stops: Vec<f64>) -> Vec<f64> {

@@ -29,7 +29,7 @@ pub enum Strategy {
     Binary(Cut),
     /// One grid for the whole face (survey of the Blender wiki, "Uniform Grid Cut").
     UniformGrid,
-    /// A fixed number of cells per control cell and direction, 0 for as many as the bound asks for (the same
+    /// A fixed number of cells per control cell and direction, 0 for as many as the bound requires (the same
     /// survey, "direct tessellation").
     ControlCells { per_cell: u32 },
     /// Bézier patches halved by a bound from their derivative patches (the same survey, "Recursive

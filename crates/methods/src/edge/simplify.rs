@@ -1,10 +1,10 @@
 //! Polylines with fewer vertices, within a Hausdorff distance.
 //!
-//! Source: Imai and Iri 1988, the shortest path over shortcuts; Balázs, Guthe, Klein 2004, section 5.1, asks
-//! for a guaranteed Hausdorff distance and no more. A shortcut from vertex i to vertex j is allowed where all
-//! vertices between lie within the distance of the segment: distances to a segment are convex, so the stretch
-//! between is within it, too, and the nearest points on the segment run from one end to the other without a
-//! gap, so the segment is within it of the stretch.
+//! Source: Imai and Iri 1988, the shortest path over shortcuts; Balázs, Guthe, Klein 2004, section 5.1,
+//! requires a guaranteed Hausdorff distance and nothing else. A shortcut from vertex i to vertex j is allowed
+//! where all vertices between lie within the distance of the segment: distances to a segment are convex, so
+//! the stretch between is within it, too, and the nearest points on the segment run from one end to the other
+//! without a gap, so the segment is within it of the stretch.
 //!
 //! Among polylines through a subset of the vertices that keep the ends and whose shortcuts are all allowed
 //! and no longer than [`LONGEST`], the result has the fewest vertices.

@@ -26,11 +26,11 @@ pub struct Untangled {
     pub loops: Vec<Vec<DVec2>>,
     /// Vertices that were set on sides.
     pub inserted: usize,
-    /// Rounding kept making new crossings: some may be left.
+    /// Rounding made new crossings in every sweep: some may remain.
     pub is_unfinished: bool,
 }
 
-/// Sweeps until nothing crosses, at most so often.
+/// The most sweeps. Each removes the crossings that rounding made in the one before.
 const SWEEPS: usize = 8;
 
 /// Intersection-free loops with the same winding numbers.

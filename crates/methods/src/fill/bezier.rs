@@ -203,7 +203,7 @@ fn patch_of(points: &[DVec2], ring: &[u32], sorted: &[UvBox]) -> Option<UvBox> {
 /// The halves of a quadrilateral, on both sides of its shorter diagonal in space.
 pub fn halves(xyz: &[DVec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     let length = |a: u32, b: u32| xyz[a as usize].distance_squared(xyz[b as usize]);
-    // Where only rounding tells them apart, the first.
+    // Where the lengths differ by rounding only, the first.
     if length(b, d) < length(a, c) * (1.0 - 1e-9) { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
 }
 

@@ -21,7 +21,7 @@ pub struct Split {
 pub trait Rule: Send {
     /// The name in the trace.
     fn name(&self) -> &'static str;
-    /// The cuts that every root gets first, whatever its error.
+    /// The cuts that every root gets first, at any error.
     fn first_cuts(&self, _root: &NurbsSurface, _tolerance: f64) -> Vec<Split> {
         Vec::new()
     }

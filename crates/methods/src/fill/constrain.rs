@@ -1,9 +1,9 @@
 //! Edges forced into a triangulation by flips.
 //!
 //! Source: Sloan 1993, *A fast algorithm for generating constrained Delaunay triangulations*: every edge that
-//! crosses the wanted one is flipped, as soon as its two triangles form a convex quadrilateral, until none is
-//! left. All decisions are exact; an edge that would cross a fixed one, or the boundary, is refused, and the
-//! triangulation stays valid.
+//! crosses the new edge is flipped, as soon as its two triangles form a convex quadrilateral, until no edge
+//! crosses it. All decisions are exact. An edge that would cross a fixed edge, or the boundary, is refused,
+//! and the triangulation stays valid.
 
 use chordal_tessellate::method::{NONE, Triangulation, orient};
 use rustc_hash::FxHashSet;

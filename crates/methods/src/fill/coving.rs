@@ -96,7 +96,7 @@ impl Coving {
         found.next().map_or((0, 0), |first| (1 + found.count(), first.axis))
     }
 
-    /// Lays down a grid with so many times as many lines.
+    /// Makes the grid, with the number of lines multiplied.
     ///
     /// # Errors
     /// Where the surface has no NURBS form.

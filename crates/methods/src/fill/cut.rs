@@ -12,8 +12,8 @@
 //!        │       │                 └─┘               be a sliver is replaced by the chord's nearer end, too
 //! ```
 //!
-//! The borders are then forced into the triangulation of the loops ([`super::constrain`]): whatever is to the
-//! left of the loops is covered exactly once, however cells and loops lie. What is left between borders is
+//! The borders are then forced into the triangulation of the loops ([`super::constrain`]): the inside of the
+//! loops is covered exactly once, for all positions of cells and loops. The triangles between borders are
 //! constrained Delaunay.
 
 use super::borders::Borders;

@@ -37,9 +37,9 @@ pub struct Delaunay {
     tolerance: f64,
     /// Lines of the uniform grid.
     lines: [usize; 2],
-    /// What triangles are restricted to by size.
+    /// The largest size of a triangle.
     allowed: f64,
-    /// How often the proof asked for more.
+    /// How often the proof requested more points.
     refined: usize,
     /// Points of the adaptive fill so far.
     points: Vec<DVec2>,

@@ -19,7 +19,7 @@ use chordal_nurbs::NurbsSurface;
 /// A grid of equal cells.
 #[derive(Clone, Copy, Debug)]
 pub struct UniformGrid {
-    /// So many times as many lines in each direction as the bound asks for.
+    /// The number of lines in each direction, as a multiple of the number that the bound requires.
     pub finer: [usize; 2],
 }
 
@@ -28,7 +28,7 @@ impl UniformGrid {
     pub const COARSEST: Self = Self { finer: [1; 2] };
 }
 
-/// A fixed number of cells per control cell; zero: as many as the bound asks for.
+/// A fixed number of cells per control cell; zero: as many as the bound requires.
 #[derive(Clone, Copy, Debug)]
 pub struct ControlCells {
     pub per_cell: u32,
@@ -38,7 +38,7 @@ pub struct ControlCells {
 const MOST_LINES: f64 = 2000.0;
 const MOST_CELLS: f64 = 250_000.0;
 
-/// Lines where the bound asks for more.
+/// The number of lines where the bound requires more than the limit.
 const BEYOND: usize = 32;
 
 impl Rule for UniformGrid {
@@ -135,7 +135,7 @@ pub fn fewest(norms: &SecondNorms, tolerance: f64) -> (usize, usize) {
         }
         n += 1.0;
     }
-    // A bound this loose says nothing; the proof that all methods share decides.
+    // A bound this loose is of no use here; the proof that all methods share refines the cells.
     if best.0 * best.1 <= MOST_CELLS { (best.0 as usize, best.1 as usize) } else { (BEYOND, BEYOND) }
 }
 

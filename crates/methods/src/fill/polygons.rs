@@ -2,8 +2,8 @@
 //!
 //! Source: Balázs, Guthe, Klein 2004, section 7. A polygon without a reflex corner is cut from its upper left
 //! corner in linear time; others by the plane sweep into monotone pieces (Garey and others 1978). Kahlesz,
-//! Balázs, Klein 2001, section 7, keeps the constrained Delaunay triangulation instead. Whether a polygon is
-//! convex costs one turn per corner, and is asked only where a trimming loop passes. Polygons are found by
+//! Balázs, Klein 2001, section 7, keeps the constrained Delaunay triangulation instead. The test for
+//! convexity costs one turn per corner, and is made only where a trimming loop passes. Polygons are found by
 //! walking along half-edges ([`super::half_edges`]); where that does not account for every triangle, or would
 //! make a sliver, the constrained Delaunay triangles of the region stay.
 //!
@@ -22,7 +22,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// How polygons become triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filling {
-    /// Convex ones from their upper left corner, others monotone.
+    /// Convex polygons from their upper left corner, others in monotone pieces.
     FanOrMonotone,
     /// All by constrained Delaunay triangulation.
     Delaunay,
@@ -258,14 +258,15 @@ fn is_convex(points: &[DVec2], polygon: &[u32], size: DVec2) -> bool {
 fn zigzag(points: &[DVec2], polygon: &[u32]) -> Vec<[u32; 3]> {
     let n = polygon.len();
     let bounds = UvBox::from_points(polygon.iter().map(|&v| points[v as usize]));
-    // The larger, the further up and to the left; directions count alike whatever the cell's proportions.
+    // Largest for the corner furthest up and to the left, relative to the size of the polygon in each
+    // direction.
     let rank = |i: usize| {
         let t = (points[polygon[i] as usize] - bounds.min) / bounds.size();
         t.y - t.x
     };
     let Some(first) = (0..n).max_by(|&a, &b| rank(a).total_cmp(&rank(b))) else { return Vec::new() };
     let mut triangles = Vec::with_capacity(n - 2);
-    // Counter-clockwise from the upper left corner runs the left side, the other way the right one.
+    // From the upper left corner, the left side runs counter-clockwise and the right side clockwise.
     let (mut left, mut right) = ((first + 1) % n, (first + n - 1) % n);
     triangles.push([polygon[first], polygon[left], polygon[right]]);
     while triangles.len() < n - 2 {
@@ -397,7 +398,7 @@ mod tests {
         }
 
         /// Convex polygons, vertices in their sides included, from the upper left corner on: linear,
-        /// complete, and convex is what the test says.
+        /// complete, and recognised as convex.
         #[test]
         fn convex_polygons_are_cut_completely(
             angles in prop::collection::vec(0.0..std::f64::consts::TAU, 3..20), stretch in 0.01f64..100.0, dent: bool,

@@ -13,8 +13,8 @@
 //!   ───────────x──────────        touched in a point: that point twice, so that the number stays even
 //! ```
 //!
-//! A patch that a loop meets is cut; of the others, one line through it tells whether it stays. Patches that
-//! lie between two lines get one of their own.
+//! A patch that a loop meets is cut. For every other patch, one line through it decides whether it is inside;
+//! a patch between two lines gets a line of its own.
 
 use super::loop_tree::LoopTree;
 use chordal_nurbs::{DVec2, UvBox};

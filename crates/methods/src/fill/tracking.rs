@@ -15,7 +15,7 @@
 //!                                                          ends before it
 //! ```
 //!
-//! Every piece over a leaf is kept; where a curve runs along an edge, that edge stands for it.
+//! Every piece over a leaf is kept. Where a curve runs along an edge, the edge is used in its place.
 
 use super::leaf_mesh::LeafMesh;
 use chordal_nurbs::{BezierCurve, DVec2, LineCrossings};
