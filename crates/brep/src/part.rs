@@ -19,8 +19,8 @@ pub struct Vertex {
 
 /// A curve piece shared by the faces that meet along it.
 ///
-/// The edge runs from `start` at `range.start` to `end` at `range.end`, with `range.start < range.end`. Readers swap
-/// the vertices (and every coedge's direction) where the file runs the edge against its curve.
+/// The edge runs from `start` at `range.start` to `end` at `range.end`, with `range.start < range.end`.
+/// Readers swap the vertices (and every coedge's direction) where the file runs the edge against its curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edge {
     /// `None`: the edge is a single point (a pole, an apex).
@@ -42,8 +42,9 @@ pub struct Coedge {
     pub edge: EdgeId,
     /// True where the loop runs along the edge from its start to its end.
     pub forward: bool,
-    /// The file's curves for this edge in the parameter space of this face's surface: none, one, or (along a seam)
-    /// both. They share the edge's parameter range unless their own says otherwise; not yet checked against the edge.
+    /// The file's curves for this edge in the parameter space of this face's surface: none, one, or (along a
+    /// seam) both. They share the edge's parameter range unless their own says otherwise; not yet checked
+    /// against the edge.
     pub pcurves: Vec<Pcurve>,
 }
 
@@ -91,7 +92,8 @@ pub enum FaceGeometry {
 pub struct Face {
     /// The surface, or why the face has none.
     pub geometry: FaceGeometry,
-    /// The face's normal is the surface's. Loops run with material on their left seen against the **face's** normal.
+    /// The face's normal is the surface's. Loops run with material on their left seen against the **face's**
+    /// normal.
     pub same_sense: bool,
     /// The shell uses the face turned over (a void's shell): triangles are written the other way round.
     pub flipped: bool,
@@ -135,7 +137,7 @@ impl Face {
 pub struct Shell {
     /// The faces, each once.
     pub faces: Vec<FaceId>,
-    /// The file says that it bounds a volume.
+    /// Whether the file states that it bounds a volume.
     pub closed: bool,
     /// The entity of the shell.
     pub source: Source,

@@ -52,7 +52,8 @@ fn on_closed(
     let (first, last) = if same_sense { (start, end) } else { (end, start) };
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * period;
     let at_seam = [first, last].map(|vertex| is_end(curve, domain.start, vertex));
-    // Two vertices that both seem to lie on the seam, one of them beside it: an edge that is tiny, or nearly all.
+    // Two vertices that both seem to lie on the seam, one of them beside it: an edge that is tiny, or nearly
+    // all.
     let snap = !(at_seam[0] && at_seam[1]) || first == last;
     let mut t0 = if snap && at_seam[0] { domain.start } else { parameter_of(curve, first) };
     if near(t0, domain.end) {
@@ -62,8 +63,8 @@ fn on_closed(
         return located(Range::new(t0, t0 + period));
     }
     let mut t1 = if snap && at_seam[1] { domain.end } else { parameter_of(curve, last) };
-    // An end beside the start of a whole turn, unless the two vertices are clearly apart: on a circle of a huge radius a
-    // short arc is a tiny part of the turn.
+    // An end beside the start of a whole turn, unless the two vertices are clearly apart: on a circle of a
+    // huge radius a short arc is a tiny part of the turn.
     let apart = first.distance(last);
     let same_place = SAME_PLACE * (first.length() + last.length());
     let is_short_arc = t1 > t0 && apart > same_place.max(ROUNDING * size(curve));
@@ -89,7 +90,7 @@ fn on_open(curve: &Curve, start: DVec3, end: DVec3, same_vertex: bool, same_sens
     let domain = curve.domain();
     let bounded = domain.is_finite();
     if bounded && same_vertex {
-        // Its ends do not meet, yet it is said to be closed: all of it is meant.
+        // Its ends do not meet, although the file states that it is closed: the whole curve is used.
         return Some(Located { range: domain, swapped: !same_sense, contradicted: false });
     }
     let mut t =
@@ -150,7 +151,7 @@ pub(crate) fn parameter_of(curve: &Curve, p: DVec3) -> f64 {
             let q = frame.local(p);
             turn(math::atan2(q.y, q.x))
         }
-        // On these two, y alone tells the parameter.
+        // On these two curves, y determines the parameter.
         Curve::Parabola { frame, focal } => frame.local(p).y / (2.0 * focal),
         Curve::Hyperbola { frame, b, .. } => math::asinh(frame.local(p).y / b),
         Curve::Ellipse { .. } => turn(curve.invert(p, None)),

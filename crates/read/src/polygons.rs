@@ -2,11 +2,11 @@
 
 use chordal_nurbs::{DVec2, DVec3};
 
-/// Polygons with more corners than this are cut as a fan, which is quick whatever they look like.
+/// Polygons with more corners than this are cut as a fan, which takes linear time.
 const MOST_CORNERS: usize = 2_000;
 
-/// Triangles of lists of corners that −1 ends, as positions in `points`; how many polygons were left out because they
-/// are no polygons.
+/// Triangles of lists of corners that −1 ends, as positions in `points`; how many polygons were left out
+/// because they are no polygons.
 pub(crate) fn indexed(points: &[DVec3], index: &[f64]) -> (Vec<[u32; 3]>, usize) {
     let mut triangles = Vec::new();
     let mut lost = 0;

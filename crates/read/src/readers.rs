@@ -1,11 +1,11 @@
-//! The readers, and how the content of a file tells its format.
+//! The readers, and how the format is recognised from the content of a file.
 
 use crate::{Format, ReadError, ReadOptions};
 use chordal_brep::Model;
 
 impl Format {
-    /// The format of a file's content; `None` where no reader of this build knows it. Compressed content is unpacked
-    /// by [`crate::read_bytes`] before.
+    /// The format of a file's content; `None` where no reader of this build knows it. Compressed content is
+    /// unpacked by [`crate::read_bytes`] before.
     ///
     /// ```
     /// use chordal_read::Format;
@@ -24,7 +24,7 @@ impl Format {
     }
 }
 
-/// How the content of a format is told from the others' and how it is read.
+/// How a format is recognised by its content, and how it is read.
 struct Reader {
     format: Format,
     looks_like: fn(&[u8]) -> bool,

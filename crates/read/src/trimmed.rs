@@ -1,11 +1,11 @@
 //! Faces from a surface and loops of curves in its parameter space: for formats that know no edges.
 //!
-//! Each loop is closed and cut at its corners ([`chain`]), loops that cross become loops that do not ([`untangle`]),
-//! loops are told apart into outer ones and holes ([`nest`]),
-//! and their pieces become edges of the part ([`edges`]). A surface without trims gets its own border ([`natural`]).
+//! Each loop is closed and cut at its corners ([`chain`]), loops that cross become loops that do not
+//! ([`untangle`]), loops are told apart into outer ones and holes ([`nest`]), and their pieces become edges
+//! of the part ([`edges`]). A surface without trims gets its own border ([`natural`]).
 //!
-//! What the caller gives runs in the surface's parameters; directions do not matter: outer loops are made to run
-//! counter-clockwise, holes clockwise.
+//! What the caller gives runs in the surface's parameters; directions do not matter: outer loops are made to
+//! run counter-clockwise, holes clockwise.
 
 mod chain;
 mod clip;
@@ -59,9 +59,9 @@ impl Piece {
 /// What a loop is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// The format says that the face lies inside.
+    /// The format states that the face lies inside.
     Outer,
-    /// The format says that the face lies outside.
+    /// The format states that the face lies outside.
     Hole,
     /// By how many other loops are around it, and the convention.
     ByNesting(Winding),
@@ -86,8 +86,9 @@ pub(crate) struct Look {
     pub source: Source,
 }
 
-/// Adds the face that `trims` cut out of a surface (without trims: all of it); where they have several outer loops, one
-/// face for each. What was repaired is added to `notes`; a face that cannot be made becomes a failed one.
+/// Adds the face that `trims` cut out of a surface (without trims: all of it); where they have several outer
+/// loops, one face for each. What was repaired is added to `notes`; a face that cannot be made becomes a
+/// failed one.
 pub(crate) fn add_faces(
     part: &mut Part,
     surface: &Arc<Surface>,

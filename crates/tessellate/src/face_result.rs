@@ -44,7 +44,7 @@ pub(crate) struct FaceResult {
     /// Which parts ran, and for how long.
     pub trace: Trace,
     pub phases: Phases,
-    /// The cells of a subdivision, where they are asked for.
+    /// The cells of a subdivision, where they are requested.
     pub cells: Vec<UvBox>,
     /// The requested method gave the face up ([`MeshIssue::MethodGaveUp`]).
     pub given_up: Option<MeshIssue>,
@@ -63,7 +63,7 @@ impl FaceResult {
 /// The result of a face, or why it has none.
 pub(crate) type Meshed = Result<Box<FaceResult>, MeshIssue>;
 
-/// True for a face without a proof although one is asked for. An error of NaN is no proof.
+/// True for a face without a proof although one is required. An error of NaN is no proof.
 pub(crate) fn is_unproven(result: &FaceResult, limits: &Limits, bound: Bound) -> bool {
     bound == Bound::Proven && !(result.proven_error <= limits.largest())
 }

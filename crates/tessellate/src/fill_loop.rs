@@ -164,7 +164,7 @@ fn check(prover: &Prover<'_>, cells: usize) -> Result<(), MeshIssue> {
     prover.check_time(cells)
 }
 
-/// What the proof says about triangles as they are.
+/// The proof of the triangles as they are.
 struct Judged {
     error: f64,
     /// The middles of triangles that must become smaller.

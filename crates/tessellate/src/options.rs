@@ -1,4 +1,4 @@
-//! What is asked of a mesh, in the units of the part.
+//! The options of a mesh, in the units of the part.
 
 use crate::bulk::Bulk;
 use crate::edge_use::EdgeSplitter;
@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// What is asked of a mesh.
+/// The options of a mesh.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
@@ -125,8 +125,8 @@ impl Cancel {
         is_set(&self.own) || self.outer.as_ref().is_some_and(is_set)
     }
 
-    /// A flag that this one sets as well. Setting the child leaves this one as it is. A child of a child looks at its
-    /// parent only.
+    /// A flag that this one sets as well. Setting the child leaves this one as it is. A child of a child
+    /// looks at its parent only.
     pub fn child(&self) -> Self {
         Self { own: Arc::default(), outer: Some(self.own.clone()) }
     }

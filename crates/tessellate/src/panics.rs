@@ -31,7 +31,7 @@ pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, MeshIssue> {
     })
 }
 
-/// What a panic says: its text where it has one.
+/// The text of a panic, where it has one.
 fn text(payload: &(dyn Any + Send)) -> String {
     let owned = payload.downcast_ref::<String>().cloned();
     let text = owned.or_else(|| payload.downcast_ref::<&str>().map(|&text| text.to_owned()));

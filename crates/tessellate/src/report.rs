@@ -76,7 +76,7 @@ pub struct PartReport {
     pub edges_given_up: usize,
     /// Edges that a fault of this program left without samples, by their index in the part.
     pub edge_faults: Vec<(u32, MeshIssue)>,
-    /// Rounds in which faces asked for finer edges.
+    /// Rounds in which faces requested finer edges.
     pub rounds: usize,
     pub seconds: StageSeconds,
     /// The model that was meshed instead of the one given, where loops of faces crossed: the same faces with

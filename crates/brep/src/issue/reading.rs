@@ -11,8 +11,8 @@ use std::fmt;
 /// The kind of an entity as the file spells it: `PLANE`, `type 108`, `NurbsSurface`.
 pub type Word = Cow<'static, str>;
 
-/// Declares the issues. A row is the documentation, the name, the values with their documentation, the code and the
-/// sentence with its arguments; values are in scope by name.
+/// Declares the issues. A row is the documentation, the name, the values with their documentation, the code
+/// and the sentence with its arguments; values are in scope by name.
 macro_rules! issues {
     ($($(#[$doc:meta])* $name:ident
         $({ $($field:ident: $type:ty = $field_doc:literal),* $(,)? })?
@@ -177,7 +177,7 @@ issues! {
         "{node} is used inside itself; ignored there";
     /// A node of a kind that has no effect on shapes or is not read.
     NotRead => "not-read", "not supported; ignored";
-    /// The data of an object are shorter than it says.
+    /// The data of an object are shorter than its stated length.
     EndsEarly { bytes: usize = "The bytes that are missing." } => "ends-early", "the data end {bytes} bytes early";
     /// A list is longer than the file.
     ListTooLong { items: u64 = "The number of items that the file states." } => "list-too-long",

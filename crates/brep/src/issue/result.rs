@@ -12,7 +12,7 @@ const NAMED: usize = 5;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum ResultIssue {
-    /// The face has no triangles, and no stage said why.
+    /// The face has no triangles, and no stage gave a reason.
     NoTriangles,
     /// The face has no area at the accuracy of the file, so it needs no triangles.
     ZeroArea,

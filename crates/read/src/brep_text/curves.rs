@@ -156,7 +156,7 @@ pub(crate) fn size(value: f64) -> Result<f64, ReadIssue> {
     }
 }
 
-/// Control points with their weights, as many as `count` says.
+/// `count` control points with their weights.
 pub(crate) fn poles<V>(
     tokens: &mut Tokens<'_>,
     count: usize,

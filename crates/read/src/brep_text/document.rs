@@ -1,5 +1,5 @@
-//! The sections of the file in their order. A section that cannot be followed to its end is left at that place; the
-//! next one is found by its keyword.
+//! The sections of the file in their order. A section that cannot be followed to its end is left at that
+//! place; the next one is found by its keyword.
 
 use super::curves::{Bounded, Parsed, curve, curve2};
 use super::locations::Locations;
@@ -23,7 +23,7 @@ pub(crate) struct Document {
     pub surfaces: Table<Patch>,
     pub triangulations: Table<Triangulation>,
     pub shapes: Table<Shape>,
-    /// How many shapes the file says it has: it numbers them from the last to the first.
+    /// The number of shapes that the file states: it numbers them from the last to the first.
     declared: usize,
     /// The shape that the file is about; where it names none, those that no other uses.
     pub roots: Vec<Sub>,

@@ -54,7 +54,7 @@ impl<'d, 'a> Builder<'d, 'a> {
         }
     }
 
-    /// The least distance that the file tells apart, 0 where it does not say.
+    /// The resolution that the file states, 0 where it states none.
     pub(crate) fn resolution(&self) -> f64 {
         self.doc.global.resolution.unwrap_or(0.0)
     }

@@ -1,8 +1,8 @@
-//! Faces that bring their own boundaries: trimmed surfaces (144), bounded ones (143), planes (108), and surfaces that
-//! are faces by themselves.
+//! Faces that bring their own boundaries: trimmed surfaces (144), bounded ones (143), planes (108), and
+//! surfaces that are faces by themselves.
 //!
-//! A boundary is given in space, in parameter space, or both. The curves in space become the edges where they lie on the
-//! surface, since neighbours have the same; otherwise the curves in parameter space do.
+//! A boundary is given in space, in parameter space, or both. The curves in space become the edges where they
+//! lie on the surface, since neighbours have the same; otherwise the curves in parameter space do.
 
 use super::boundaries::{self, Boundary, LOOSE, Preference};
 use super::builder::Builder;
@@ -55,7 +55,8 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// 143: which curves there are, surface, number of boundaries, boundaries; the first of them the outer one.
+    /// 143: which curves there are, surface, number of boundaries, boundaries; the first of them the outer
+    /// one.
     fn bounded_surface(&mut self, ix: Ix, look: &Look) -> Res<Vec<FaceId>> {
         let by = matrix::of_entity(self.doc, ix)?;
         let mut args = self.doc.open(ix)?;
@@ -156,7 +157,7 @@ impl Builder<'_, '_> {
         trimmed::add_faces(&mut self.build.part, &surface, trims, &look, &self.doc.notes)
     }
 
-    /// All boundaries as curves in space; `turns` says which way each runs in our parameters.
+    /// All boundaries as curves in space; `turns` is the direction of each in our parameters.
     fn cut_in_space(
         &mut self,
         ix: Ix,
@@ -225,8 +226,8 @@ impl Builder<'_, '_> {
     }
 }
 
-/// True where the curves in space are good edges: they lie on the surface, and each has its curve in parameter space
-/// where there are any.
+/// True where the curves in space are good edges: they lie on the surface, and each has its curve in
+/// parameter space where there are any.
 fn in_space(boundary: &mut Boundary, patch: &Patch, resolution: f64) -> bool {
     if boundary.model.is_empty() {
         return false;
@@ -242,8 +243,9 @@ fn in_space(boundary: &mut Boundary, patch: &Patch, resolution: f64) -> bool {
     boundary.off_surface(patch) <= (ON_SURFACE * boundary.size()).max(strict * resolution)
 }
 
-/// Which way the pieces in space run in the parameters of the patch. Where the file's two descriptions of the boundary
-/// are not at one place, their points say nothing of each other; that both run the same way is then all that is left.
+/// Which way the pieces in space run in the parameters of the patch. Where the file's two descriptions of the
+/// boundary are not at one place, their points say nothing of each other; that both run the same way is then
+/// all that is left.
 fn known_turn(boundary: &Boundary, patch: &Patch, resolution: f64) -> Option<bool> {
     if boundary.parameters_fit(patch, resolution) {
         boundary.turn(patch)

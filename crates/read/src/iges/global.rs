@@ -5,7 +5,7 @@ use super::parameters::{Record, Value, record};
 use crate::encoding::Encoding;
 use chordal_brep::{ReadIssue, Real};
 
-/// What the global section says of the whole file.
+/// The values of the global section.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Global {
     pub parameter_delimiter: u8,
@@ -13,7 +13,7 @@ pub(crate) struct Global {
     /// Millimetres per unit, the model's scale included.
     pub length_mm: f64,
     pub unit: String,
-    /// The least distance that the writer tells apart, in file units.
+    /// The resolution of the writer, in file units.
     pub resolution: Option<f64>,
     pub version: i64,
     pub product: String,
@@ -90,7 +90,8 @@ impl Global {
     }
 }
 
-/// Lines as long as the section's columns: blanks at their ends may have been cut, and strings run on over them.
+/// Lines as long as the section's columns: blanks at their ends may have been cut, and strings run on over
+/// them.
 pub(crate) fn padded(text: &[u8]) -> impl Iterator<Item = u8> {
     let blanks = 72usize.saturating_sub(text.len());
     text.iter().copied().chain(std::iter::repeat_n(b' ', blanks))

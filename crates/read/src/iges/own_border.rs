@@ -1,7 +1,8 @@
-//! Outer boundaries that do not close and run along the border of their surface: what is left out is the rest of it.
+//! Outer boundaries that do not close and run along the border of their surface: what is left out is the rest
+//! of it.
 //!
-//! Some writers leave out the side of a patch at which the whole surface closes, and approximate what they do write by one
-//! smooth curve, which cuts the corners. The patch itself is then the better description.
+//! Some writers leave out the side of a patch at which the whole surface closes, and approximate what they do
+//! write by one smooth curve, which cuts the corners. The patch itself is then the better description.
 
 use super::boundaries::{Boundary, LOOSE, to_chord};
 use super::surfaces::Patch;
@@ -13,11 +14,11 @@ const STEPS: u32 = 64;
 /// The boundary runs along this share of the border at least.
 const MOST: f64 = 0.5;
 
-/// Curves farther off their surface than so many times the resolution are approximations.
+/// Curves further from their surface than this multiple of the resolution are approximations.
 const STRAYS: f64 = 10.0;
 
-/// True where a boundary in space alone strays from its surface, does not close, and runs along most of the border of a
-/// spline patch.
+/// True where a boundary in space alone strays from its surface, does not close, and runs along most of the
+/// border of a spline patch.
 pub(crate) fn stands_for_border(boundary: &Boundary, patch: &Patch, resolution: f64) -> bool {
     let (true, Surface::Nurbs(surface)) = (boundary.parameters.is_empty(), &patch.surface) else {
         return false;

@@ -19,7 +19,7 @@ fn sizes(doc: &Doc<'_>, ix: Ix, upper: i64, degree: i64) -> Res<(usize, usize, u
     }
 }
 
-/// The part of a domain that the file's own range leaves; all of it where that makes no sense.
+/// The part of a domain that the file's own range leaves; all of it where that range is invalid.
 fn within(domain: Range, start: f64, end: f64) -> Range {
     let range = Range::new(start.max(domain.start), end.min(domain.end));
     // Ends that are rounded to fewer digits than the knots are the knots.
@@ -126,8 +126,8 @@ pub(crate) fn cubic_curve(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
     Ok((Curve::Nurbs(nurbs), range))
 }
 
-/// 114: type, patch type, M, N, break points along u and v, 48 coefficients for each of (M + 1)(N + 1) patches, the
-/// last row and column of which mean nothing.
+/// 114: type, patch type, M, N, break points along u and v, 48 coefficients for each of (M + 1)(N + 1)
+/// patches, the last row and column of which mean nothing.
 pub(crate) fn cubic_surface(doc: &Doc<'_>, ix: Ix) -> Res<(Surface, UvBox)> {
     let mut args = doc.open(ix)?;
     args.skip(2);

@@ -9,7 +9,7 @@ use chordal_document::DocumentError;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-/// What tells the kinds of JSON apart.
+/// The keys by which the kinds of JSON are recognised.
 #[derive(Deserialize)]
 struct Head {
     schema: Option<String>,

@@ -7,8 +7,8 @@ use chordal_nurbs::{Curve2, DVec2, NurbsCurve2, Surface, UvBox};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
-/// Ends nearer to each other or to the border of the domain than this share of it are there; geomdl's own tolerance is
-/// 1e-7 of its unit domain.
+/// Ends nearer to each other or to the border of the domain than this share of it are there; geomdl's own
+/// tolerance is 1e-7 of its unit domain.
 const MEETS: f64 = 1e-7;
 
 /// The control points of a curve or surface, and their weights.
@@ -65,7 +65,7 @@ pub(super) struct Trim {
 /// Reads one trim.
 ///
 /// # Errors
-/// Where it makes no sense.
+/// Where the value is invalid.
 pub(super) fn trim_loop(data: &Value, source: Source, notes: &Notes) -> Result<Trim, ReadIssue> {
     match TrimData::deserialize(data).map_err(broken)? {
         TrimData::Container { data, reversed } => {
@@ -125,7 +125,8 @@ fn points(list: &[Vec<f64>]) -> Result<Vec<DVec2>, ReadIssue> {
     list.iter().map(point).collect()
 }
 
-/// Turns pieces round that begin where the one before them begins, or end where it ends; true where one was turned.
+/// Turns pieces round that begin where the one before them begins, or end where it ends; true where one was
+/// turned.
 fn turn_into_chain(pieces: &mut [Piece]) -> bool {
     let mut turned = false;
     for i in 1..pieces.len() {
@@ -145,7 +146,8 @@ fn turn_into_chain(pieces: &mut [Piece]) -> bool {
 }
 
 impl Trim {
-    /// The loop. Where its two ends lie on the border of the domain, it is closed along the shorter way round that.
+    /// The loop. Where its two ends lie on the border of the domain, it is closed along the shorter way round
+    /// that.
     pub(super) fn closed(mut self, surface: &Surface, source: Source, notes: &Notes) -> TrimLoop {
         let ends = self.pieces.first().zip(self.pieces.last()).map(|(a, b)| (b.at(1.0), a.at(0.0)));
         if let Some((from, to)) = ends
@@ -162,8 +164,8 @@ impl Trim {
     }
 }
 
-/// The corners passed, with both ends, on the shorter way along the border; `None` where the ends meet or one of them is
-/// not on the border.
+/// The corners passed, with both ends, on the shorter way along the border; `None` where the ends meet or one
+/// of them is not on the border.
 fn border_way(domain: UvBox, from: DVec2, to: DVec2) -> Option<Vec<DVec2>> {
     let unit = |p: DVec2| (p - domain.min) / domain.size();
     let (a, b) = (unit(from), unit(to));

@@ -79,7 +79,7 @@ impl Element {
         curve.map(Curve2::Nurbs).map_err(ReadIssue::from)
     }
 
-    /// The surface of a `surf` element over its own range; what was guessed is told to `warn`.
+    /// The surface of a `surf` element over its own range; guesses are passed to `warn`.
     ///
     /// # Errors
     /// A sentence, where it makes no sense.
@@ -177,7 +177,8 @@ impl Element {
     }
 }
 
-/// A point with its weight in homogeneous form, as rational types use it; others leave the weight out of account.
+/// A point with its weight in homogeneous form, as rational types use it; others leave the weight out of
+/// account.
 pub(super) fn homogeneous(point: DVec3, weight: f64, rational: bool) -> DVec4 {
     if rational { (point * weight).extend(weight) } else { point.extend(1.0) }
 }

@@ -75,7 +75,8 @@ pub(super) fn number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-/// The position that a reference means in a list of `count`: counted from 1, or back from the end where negative.
+/// The position that a reference means in a list of `count`: counted from 1, or back from the end where
+/// negative.
 pub(super) fn position(word: &[u8], count: usize) -> Option<usize> {
     let index: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     let count = i64::try_from(count).ok()?;
@@ -83,7 +84,7 @@ pub(super) fn position(word: &[u8], count: usize) -> Option<usize> {
     (0..count).contains(&at).then_some(at as usize)
 }
 
-/// Words as text, whatever their encoding.
+/// Words as text, in any encoding.
 pub(super) fn text(word: &[u8]) -> String {
     String::from_utf8_lossy(word).into_owned()
 }

@@ -183,7 +183,7 @@ impl<'a> Reader<'a> {
         let layer = self.layers.iter().find(|layer| layer.index == found.layer);
         Look {
             name: found.name,
-            // A layer's colour is that of its wires, black unless changed: it says nothing of how surfaces look.
+            // A layer's colour is that of its wires, black by default: it is not the colour of surfaces.
             color: found.color,
             layer: layer.map(|layer| layer.name.clone()).filter(|name| !name.is_empty()),
             flipped: false,

@@ -50,7 +50,7 @@ pub(super) struct RawFace {
     pub color: Option<Color>,
 }
 
-/// The lists of a boundary representation. A curve or surface that makes no sense is there with the reason.
+/// The lists of a boundary representation. An invalid curve or surface has an entry with the reason.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RawBrep {
     pub curves_2d: Vec<Res<RhinoCurve>>,
@@ -124,7 +124,7 @@ fn objects<T>(data: &mut Bytes, read: impl Fn(&mut Bytes) -> Res<T>) -> Res<Vec<
             all.push(Err(ReadIssue::Missing { what: "content in the file" }));
             continue;
         }
-        // One that makes no sense is passed over as a whole.
+        // An invalid one is skipped as a whole.
         let mut inner = body;
         all.push(read(&mut inner));
         body.chunk()?;

@@ -137,7 +137,7 @@ impl Maker<'_> {
                     ReadIssue::GapClosed { gap: Millimetres(gap * self.millimetres) },
                 );
             }
-            // Rhino's loops run about the surface's normal, whatever the face's.
+            // Rhino's loops are oriented by the surface's normal, not the face's.
             if raw.reversed {
                 coedges.reverse();
                 coedges.iter_mut().for_each(|coedge| coedge.forward = !coedge.forward);
@@ -163,7 +163,7 @@ impl Maker<'_> {
         }
         let pcurve = curve.and_then(|curve| pcurve(curve, &trim.proxy, surface));
         let made = self.edge(trim)?;
-        // Rhino's edges run with their trims unless told otherwise.
+        // Rhino's edges have the direction of their trims unless a flag reverses them.
         let forward = !trim.against ^ made.turned;
         let pcurves = match pcurve {
             Ok((curve, range)) => vec![along_edge(curve, range, forward != trim.proxy.reversed)],
@@ -241,7 +241,8 @@ impl Maker<'_> {
     }
 }
 
-/// True where two trims of loops run along every edge, one each way: old files do not say that they are closed.
+/// True where two trims of loops run along every edge, one each way: old files do not say that they are
+/// closed.
 fn pairs_up(raw: &RawBrep) -> bool {
     let mut uses = vec![[0u32; 2]; raw.edges.len()];
     for face in &raw.faces {

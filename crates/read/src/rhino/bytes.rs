@@ -1,7 +1,7 @@
 //! Bytes and chunks of an archive.
 //!
-//! A chunk is a type code, a length (32 bits, from version 50 on 64) and a body; short ones hold a number in place of
-//! the length. Bodies that end in a checksum have a type code that says so.
+//! A chunk is a type code, a length (32 bits, from version 50 on 64) and a body; short ones hold a number in
+//! place of the length. Bodies that end in a checksum have a bit for it in the type code.
 
 use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DVec3, Range};

@@ -1,7 +1,7 @@
 //! Version 1: objects stand at the top of the file, each a shell or a face of trimmed spline surfaces.
 //!
-//! A trim has its own curves and knows by number which trims are glued to it. The numbers are not followed: every face
-//! becomes an island, and sewing joins what meets.
+//! A trim has its own curves and knows by number which trims are glued to it. The numbers are not followed:
+//! every face becomes an island, and sewing joins what meets.
 
 use super::bytes::{Bytes, Res};
 use super::curves::completed;
@@ -210,7 +210,7 @@ fn knots(data: &mut Bytes, order: usize, count: usize) -> Res<Vec<f64>> {
     Ok(knots)
 }
 
-/// `rational` says 0 no weights, 1 points as they are, 2 points with their weights multiplied in.
+/// `rational` is 0 without weights, 1 for plain points, 2 for points multiplied by their weights.
 fn control_points(
     data: &mut Bytes,
     count: usize,

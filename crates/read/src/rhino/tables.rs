@@ -117,12 +117,12 @@ pub(super) fn color(data: &mut Bytes) -> Res<Option<Color>> {
     Ok((!unset).then(|| Color([linear(r), linear(g), linear(b), opacity])))
 }
 
-/// Where an object's colour comes from: 1 says from itself.
+/// The source of an object's colour: 1 is the object itself.
 const FROM_OBJECT: u8 = 1;
 /// The mode of objects that define a block.
 const BLOCK_MEMBER: u8 = 3;
 
-/// Reads an object's attributes as far as they are of use.
+/// Reads the attributes of an object that are used.
 pub(super) fn attributes(mut data: Bytes) -> Res<Attributes> {
     let (major, _) = data.version()?;
     if major >= 2 { recent_attributes(&mut data) } else { old_attributes(&mut data) }
@@ -143,7 +143,8 @@ fn old_attributes(data: &mut Bytes) -> Res<Attributes> {
     Ok(Attributes { name, layer, color, in_block: mode & 15 == BLOCK_MEMBER })
 }
 
-/// Since version 5 only what departs from the usual is written, each item behind its number, in increasing order.
+/// Since version 5 only what departs from the usual is written, each item behind its number, in increasing
+/// order.
 fn recent_attributes(data: &mut Bytes) -> Res<Attributes> {
     data.uuid()?;
     let mut found = Attributes { layer: data.i32()?, ..Attributes::default() };

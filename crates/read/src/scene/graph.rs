@@ -1,4 +1,4 @@
-//! Nodes with named fields, whatever the file's encoding.
+//! Nodes with named fields, for all encodings of a file.
 
 use crate::Winding;
 use crate::assemble::Notes;
@@ -9,7 +9,7 @@ use std::borrow::Cow;
 /// The position of a node in its graph.
 pub(crate) type NodeIx = u32;
 
-/// The value of a field as far as the encoding tells; the reader of the field knows the type.
+/// The value of a field as the encoding gives it; the reader of the field knows the type.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Numbers(Vec<f64>),
@@ -147,7 +147,7 @@ pub(crate) fn parse_number(word: &str) -> Option<f64> {
 /// A prototype: what an instance of it stands for.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Prototype {
-    /// The fields with the values that hold unless an instance says otherwise.
+    /// The fields with their default values.
     pub defaults: Vec<(String, Value)>,
     pub body: Vec<NodeIx>,
     /// Defined in another file.

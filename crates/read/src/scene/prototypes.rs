@@ -8,7 +8,8 @@ use rustc_hash::FxHashMap;
 const BUDGET_PER_NODE: usize = 50;
 const BUDGET: usize = 1_000_000;
 
-/// Replaces every instance by a copy of the first node of its prototype's body, which says what the instance is.
+/// Replaces every instance by a copy of the first node of its prototype's body, which defines the kind of the
+/// instance.
 pub(crate) fn expand(graph: &mut Graph) {
     if graph.prototypes.values().all(|p| p.external) {
         return;
@@ -97,7 +98,7 @@ impl Copy<'_> {
         Some(new)
     }
 
-    /// The value of a field of the instance, or what its prototype says.
+    /// The value of a field of the instance, or the default of its prototype.
     fn instance_value(&mut self, field: &str) -> Option<Value> {
         let instance = self.graph.node(self.instance);
         let value = instance.field(field).cloned().or_else(|| {

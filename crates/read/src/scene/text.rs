@@ -1,8 +1,8 @@
 //! The text encodings of Inventor, VRML and X3D as a graph of nodes.
 //!
-//! Fields are told from nodes by what follows a word: `{` makes it the type of a node. The type of a field's value is
-//! what it looks like, so that nodes nobody knows are read past without harm. Names hold from their DEF on, until
-//! another one takes them.
+//! Fields are told from nodes by what follows a word: `{` makes it the type of a node. The type of a field's
+//! value is what it looks like, so that nodes nobody knows are read past without harm. Names hold from their
+//! DEF on, until another one takes them.
 
 use super::graph::{Graph, Node, NodeIx, Prototype, Value};
 use super::lexer::{Lexer, Token};
@@ -257,7 +257,7 @@ impl Parser<'_> {
                 },
                 Token::Sign(sign) if sign == end => break,
                 Token::End => break,
-                // A list that nobody closed.
+                // A list without its closing bracket.
                 Token::Sign(b'}') => {
                     self.lexer.give_back();
                     break;

@@ -74,7 +74,7 @@ impl<'d> Args<'d> {
         self.bytes.get(self.at).copied()
     }
 
-    /// Moves to the next attribute and says what it is.
+    /// Moves to the next attribute and returns its kind.
     pub(crate) fn kind(&mut self) -> Kind {
         loop {
             let Some(b) = self.byte() else { return Kind::End };

@@ -1,4 +1,4 @@
-//! Shells, bodies and whatever else a representation lists.
+//! Shells, bodies and the other items of a representation.
 
 use super::builder::Builder;
 use super::document::{Ix, Res};
@@ -85,7 +85,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A complex instance by the leaf that says what it is.
+    /// A complex instance, by the leaf that determines its kind.
     fn complex_item(&mut self, ix: Ix, _depth: u32) -> Res<()> {
         let kinds = self.doc.kinds(ix);
         let has = |kw| kinds.contains(&kw);

@@ -1,4 +1,5 @@
-//! B-spline data of STEP, for curves and surfaces alike: knot vectors from multiplicities, or from the form's name.
+//! B-spline data of STEP, for curves and surfaces alike: knot vectors from multiplicities, or from the form's
+//! name.
 
 use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::NurbsError;
@@ -24,8 +25,8 @@ pub(crate) struct KnotVector {
 }
 
 impl Knots {
-    /// The knot vector for `count` control points. Nothing is allocated before the multiplicities are known to add
-    /// up, whatever the file claims.
+    /// The knot vector for `count` control points. Nothing is allocated before the multiplicities are known
+    /// to add up, for any count that the file states.
     pub(crate) fn vector(&self, degree: usize, count: usize) -> Result<KnotVector, ReadIssue> {
         if degree == 0 || degree > 100 {
             return Err(NurbsError::Degree(degree).into());

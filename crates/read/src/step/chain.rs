@@ -1,5 +1,5 @@
-//! Loops whose coedges do not meet end to start: turned, reordered, their vertices merged, and at last joined by
-//! straight edges, so that a loop is closed whatever the file says.
+//! Loops whose coedges do not meet end to start: turned, reordered, their vertices merged, and finally joined
+//! by straight edges, so that every loop is closed.
 
 use super::builder::Builder;
 use super::document::Ix;
@@ -41,9 +41,9 @@ impl Builder<'_> {
 
     /// Mends coedges that fit only the other way round.
     ///
-    /// On an open curve the vertices tell which way the edge runs, so the flag of the use is wrong. On a closed one
-    /// they do not: there it is the edge, rather than each of its uses, that has its two vertices exchanged, and the
-    /// other part of the curve is meant; unless an earlier loop was content with it.
+    /// On an open curve the vertices tell which way the edge runs, so the flag of the use is wrong. On a
+    /// closed one they do not: there it is the edge, rather than each of its uses, that has its two vertices
+    /// exchanged, and the other part of the curve is meant; unless an earlier loop was content with it.
     fn turn_misfits(&mut self, ix: Ix, coedges: &mut [Coedge]) {
         let count = coedges.len();
         for i in 0..count {
@@ -63,8 +63,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Makes an edge on a closed curve the other part between its vertices; false where it has no other part or where
-    /// a loop uses it already.
+    /// Makes an edge on a closed curve the other part between its vertices; false where it has no other part
+    /// or where a loop uses it already.
     fn exchange_vertices(&mut self, id: EdgeId) -> bool {
         let edge = &mut self.build.part.edges[id.index()];
         let Some(period) = edge.curve.as_ref().and_then(|curve| curve.period()) else { return false };
@@ -87,7 +87,8 @@ impl Builder<'_> {
         true
     }
 
-    /// The same coedges in an order in which each starts where the one before ends, if they make one closed loop.
+    /// The same coedges in an order in which each starts where the one before ends, if they make one closed
+    /// loop.
     fn sorted(&self, coedges: &[Coedge]) -> Option<Vec<Coedge>> {
         let mut found = chained(coedges.to_vec(), |coedge| self.build.ends(coedge), |_, _| f64::INFINITY);
         if found.open.is_empty() && found.closed.len() == 1 { found.closed.pop() } else { None }

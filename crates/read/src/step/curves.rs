@@ -55,7 +55,8 @@ pub(crate) fn is_surface_curve(kw: Kw) -> bool {
 }
 
 impl Geometry<'_> {
-    /// The curve of an entity, without the bounds that it may have; turned round where its sense is against it.
+    /// The curve of an entity, without the bounds that it may have; turned round where its sense is against
+    /// it.
     pub(crate) fn curve(&mut self, ix: Ix) -> Res<Curve> {
         self.nested(ix, |geometry| geometry.build_curve(ix))
     }
@@ -234,7 +235,7 @@ impl Geometry<'_> {
         Ok(SplineCurve { degree, points, knots, weights })
     }
 
-    /// A valid spline, or a sentence that says why not.
+    /// A valid spline, or the reason why there is none.
     pub(crate) fn checked_spline<V: Vector>(
         &self,
         ix: Ix,
@@ -405,8 +406,8 @@ impl Trim {
     }
 }
 
-/// The range from one parameter to another, unwrapped on a periodic curve; the flag tells that an open curve's
-/// parameters came in the wrong order. `None` where they are equal.
+/// The range from one parameter to another, unwrapped on a periodic curve; the flag tells that an open
+/// curve's parameters came in the wrong order. `None` where they are equal.
 fn between(curve: &Curve, from: f64, to: f64) -> Option<(Range, bool)> {
     if let Some(period) = curve.period() {
         // Beyond this many turns an angle has too few digits left to mean anything.

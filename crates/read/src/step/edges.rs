@@ -1,4 +1,5 @@
-//! Vertices and edges: one edge for each EDGE_CURVE, one vertex for each VERTEX_POINT, whatever the faces that use them.
+//! Vertices and edges: one edge for each EDGE_CURVE, one vertex for each VERTEX_POINT, shared by all faces
+//! that use them.
 
 use super::builder::{Builder, KnownEdge};
 use super::document::{Ix, Res};
@@ -8,8 +9,8 @@ use chordal_brep::{Edge, Issue, ReadIssue, Source, VertexId};
 use chordal_nurbs::{Curve, Range};
 use std::sync::Arc;
 
-/// A gap between a vertex and its curve is noted where it exceeds this part of the edge's length: gaps below it are
-/// the rule in files of loose accuracy, and the report lists the widest one anyway.
+/// A gap between a vertex and its curve is noted where it exceeds this part of the edge's length: gaps below
+/// it are the rule in files of loose accuracy, and the report lists the widest one anyway.
 const NOTED_GAP: f64 = 0.1;
 
 impl Builder<'_> {

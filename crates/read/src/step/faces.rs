@@ -154,7 +154,7 @@ impl Builder<'_> {
         }
     }
 
-    /// FACE_BOUND: a loop, turned round where its orientation says so.
+    /// FACE_BOUND: a loop, reversed where its orientation is false.
     fn bound(&mut self, ix: Ix, surface: Ix) -> Res<Loop> {
         let kind = if self.doc.kw(ix) == Kw::FaceOuterBound { Kw::FaceOuterBound } else { Kw::FaceBound };
         let mut args = self.doc.leaf(ix, kind)?;
@@ -239,7 +239,8 @@ impl Builder<'_> {
         Ok(coedges)
     }
 
-    /// ORIENTED_EDGE(name, *, *, element, orientation), or a bare edge; whether the loop runs along the entity.
+    /// ORIENTED_EDGE(name, *, *, element, orientation), or a bare edge; whether the loop runs along the
+    /// entity.
     fn oriented_edge(&mut self, ix: Ix) -> Res<(KnownEdge, bool)> {
         let (mut at, mut along) = (ix, true);
         for _ in 0..MAX_FACE_DEPTH {

@@ -3,7 +3,7 @@
 use super::text;
 use memchr::memmem;
 
-/// "STEP AP214 …" from FILE_SCHEMA, as far as it can be told.
+/// "STEP AP214 …" from FILE_SCHEMA, as far as it is known.
 pub(crate) fn schema(head: &[u8]) -> String {
     let name = memmem::find(head, b"FILE_SCHEMA").and_then(|at| {
         let rest = &head[at..];

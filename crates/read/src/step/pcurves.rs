@@ -1,4 +1,5 @@
-//! The file's curves of an edge in the parameter spaces of its faces, with the ranges that correspond to the edge's.
+//! The file's curves of an edge in the parameter spaces of its faces, with the ranges that correspond to the
+//! edge's.
 
 use super::builder::{Builder, SurfaceUse};
 use super::curves::{CURVES, is_surface_curve};
@@ -32,7 +33,7 @@ impl Builder<'_> {
         };
         let mut found = Vec::new();
         for ix in list {
-            // A surface instead of a pcurve only says that the edge lies on it.
+            // A surface in place of a pcurve only states that the edge lies on it.
             if !matches!(self.doc.kw(ix), Kw::Pcurve | Kw::BoundedPcurve | Kw::Complex) {
                 continue;
             }
@@ -52,8 +53,8 @@ impl Builder<'_> {
 
     /// A pcurve with the range that corresponds to the edge's.
     ///
-    /// Most writers give both curves the same parameters. Where a bounded pcurve's domain is another one, the whole
-    /// pcurve is meant, and it may run either way.
+    /// Most writers give both curves the same parameters. Where a bounded pcurve's domain is another one, the
+    /// whole pcurve is meant, and it may run either way.
     fn over_edge(
         &mut self,
         edge: EdgeId,

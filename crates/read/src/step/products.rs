@@ -1,4 +1,4 @@
-//! What the file says about products: their shapes, and which is used where.
+//! The products of the file: their shapes, and which product is used where.
 
 use super::args::Args;
 use super::document::{Doc, Ix};
@@ -37,7 +37,7 @@ pub(crate) struct Products {
     pub usages: FxHashMap<Ix, Vec<Usage>>,
     /// Product definitions used in others.
     pub used: FxHashSet<Ix>,
-    /// The relation that places a usage, with the entity that says so.
+    /// The relation that places a usage, with its entity.
     pub placements: FxHashMap<Ix, (Ix, Relation)>,
     /// Relations between representations that place no usage.
     pub related: FxHashMap<Ix, Vec<Relation>>,

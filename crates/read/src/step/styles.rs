@@ -30,7 +30,7 @@ struct Found {
 const MAX_DEPTH: u32 = 8;
 
 impl Styles {
-    /// Everything that the file says about colours and layers.
+    /// All colours and layers of the file.
     pub(crate) fn read(doc: &Doc<'_>) -> Self {
         let mut styles = Self::default();
         let mut known = FxHashMap::default();

@@ -116,7 +116,7 @@ fn read_unit(doc: &Doc<'_>, ix: Ix, depth: u32) -> Unit {
     Unit::Other
 }
 
-/// CONVERSION_BASED_UNIT(name, factor): so many of another unit.
+/// CONVERSION_BASED_UNIT(name, factor): a multiple of another unit.
 fn conversion(doc: &Doc<'_>, ix: Ix, depth: u32) -> Unit {
     let Ok(mut args) = doc.leaf(ix, Kw::ConversionBasedUnit) else { return Unit::Other };
     let name = args.string();

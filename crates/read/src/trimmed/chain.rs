@@ -5,8 +5,8 @@ use crate::assemble::Notes;
 use chordal_brep::{Percent, ReadIssue};
 use chordal_nurbs::{DVec2, Range, math};
 
-/// Ends of pieces nearer together than this share of the domain meet: files of 32-bit numbers round to about this.
-/// Wider gaps are bridged, and said to be.
+/// Ends of pieces nearer together than this share of the domain meet: files of 32-bit numbers round to about
+/// this. Wider gaps are bridged, with a warning.
 const MEETS: f64 = 1e-6;
 
 /// Pieces turn by more than this (radians, in the unit square) at a corner, which becomes a vertex.
@@ -119,8 +119,8 @@ fn is_a_turn(d_uv: DVec2, scale: &Scale) -> bool {
     })
 }
 
-/// The piece, cut where its direction jumps, without the stretches in which it stands still (control points repeated
-/// for a corner).
+/// The piece, cut where its direction jumps, without the stretches in which it stands still (control points
+/// repeated for a corner).
 fn cut_at_corners(piece: &Piece, scale: &Scale) -> Vec<Piece> {
     let step = 1e-7 * piece.range.length();
     let direction = |a: f64, b: f64| scale.unit(piece.curve.point(b)) - scale.unit(piece.curve.point(a));

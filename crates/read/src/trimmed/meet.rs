@@ -4,21 +4,22 @@
 //! 2. A sweep along x finds segments that cross and vertices that lie on segments.
 //! 3. Each find is carried over to the exact curves by Newton's method.
 //!
-//! Not guaranteed: two curves that cross twice within [`FLAT`] of each other may be taken not to meet. The mesher finds
-//! what is left.
+//! Not guaranteed: two curves that cross twice within [`FLAT`] of each other may be taken not to meet. The
+//! mesher finds what is left.
 
 use super::chain::Chain;
 use super::{Piece, Scale};
 use chordal_nurbs::DVec2;
 
-/// Polylines follow their pieces within this share of the domain: fine enough that what lies between is a sliver, coarse
-/// enough that a circle is a few hundred segments.
+/// Polylines follow their pieces within this share of the domain: fine enough that what lies between is a
+/// sliver, coarse enough that a circle is a few hundred segments.
 const FLAT: f64 = 3e-5;
 
-/// A segment is halved at most so often.
+/// The most halvings of a segment.
 const DEPTH: u32 = 10;
 
-/// Places nearer together than this share of the domain are one: what Newton's method and 64-bit parameters leave.
+/// Places nearer together than this share of the domain are one: what Newton's method and 64-bit parameters
+/// leave.
 pub(super) const ONE_PLACE: f64 = 2e-9;
 
 /// Newton's method converges quadratically from a crossing of polylines; more steps mean that there is none.

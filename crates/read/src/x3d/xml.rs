@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 /// Elements within elements deeper than this are left out.
 const MAX_DEPTH: usize = 400;
 
-/// The graph of an XML file, as much of it as can be understood, and what it says of its version.
+/// The graph of an XML file, as far as it can be read, and the version that it states.
 pub(super) fn parse(bytes: &[u8]) -> (Graph, String) {
     let text = String::from_utf8_lossy(bytes);
     let bytes = text.as_bytes();

@@ -1,4 +1,4 @@
-//! Chords of edges that a face asks to be made finer.
+//! Chords of edges that a face requests to be finer.
 
 use crate::effort::Setback;
 use crate::face_mesh::FaceMesh;
