@@ -4,8 +4,9 @@ use crate::args::CheckArgs;
 use crate::exit::{Exit, print, say};
 use chordal::brep::issue::words::length_mm;
 use chordal::mesh_file::{AgainstReport, CheckReport, check_mesh};
-use chordal::{MeshOptions, Tolerance};
+use chordal::{InputFormat, MeshOptions, Tolerance};
 use std::fmt::Write;
+use std::path::Path;
 
 /// The fine mesh that stands for the model: ten times as fine as the default, in percent of the diagonal.
 const REFERENCE: Tolerance = Tolerance::Percent(0.01);
@@ -16,7 +17,7 @@ pub fn run(args: &CheckArgs) -> Exit {
     let found = match check_mesh(&args.mesh, args.unit, against) {
         Ok(found) => found,
         Err(error) => {
-            say(&error.to_string());
+            say(&format!("{error}{}", cad_hint(&args.mesh)));
             return Exit::Nothing;
         }
     };
@@ -24,6 +25,15 @@ pub fn run(args: &CheckArgs) -> Exit {
     let far =
         |limit: f64| found.against.as_ref().is_some_and(|a| a.mesh_to_model.max(a.model_to_mesh) > limit);
     if found.clean() && !args.tolerance.is_some_and(far) { Exit::Clean } else { Exit::Problems }
+}
+
+/// What to do with a CAD model that is given in place of a mesh.
+pub fn cad_hint(path: &Path) -> &'static str {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    match InputFormat::of_extension(extension) {
+        None | Some(InputFormat::Obj | InputFormat::Json) => "",
+        Some(_) => "; a CAD model is meshed by `chordal mesh` and described by `chordal info`",
+    }
 }
 
 /// Writing to a string cannot fail, so results of `write!` are dropped.

@@ -1,7 +1,11 @@
 //! Exit codes, and the two channels: results on standard output, messages on standard error.
 
-use std::io::{IsTerminal, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Standard output could not be written.
+static RESULTS_ARE_LOST: AtomicBool = AtomicBool::new(false);
 
 /// How the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,9 +19,10 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// The code for the system.
+    /// The code for the system; results that did not reach standard output are a problem.
     pub fn code(self) -> ExitCode {
-        ExitCode::from(match self {
+        let are_lost = RESULTS_ARE_LOST.load(Ordering::Relaxed);
+        ExitCode::from(match if are_lost { self.max(Exit::Problems) } else { self } {
             Exit::Clean => 0,
             Exit::Problems => 1,
             Exit::Nothing => 2,
@@ -28,7 +33,7 @@ impl Exit {
 /// One sentence on standard error.
 pub fn say(sentence: &str) {
     // Where this fails there is nobody to tell.
-    let _ = writeln!(std::io::stderr(), "chordal: {sentence}");
+    let _ = writeln!(io::stderr(), "chordal: {sentence}");
 }
 
 /// Text on standard output; a reader that has gone away is no error.
@@ -36,13 +41,28 @@ pub fn print(data: &str) {
     print_bytes(data.as_bytes());
 }
 
-/// Bytes on standard output; a reader that has gone away is no error.
+/// Bytes on standard output; a reader that has gone away is no error. Any other failure is told, and the program ends
+/// with 1 at least.
 pub fn print_bytes(data: &[u8]) {
-    let mut out = std::io::stdout().lock();
-    let _ = out.write_all(data).and_then(|()| out.flush());
+    if let Err(error) = try_print(data) {
+        RESULTS_ARE_LOST.store(true, Ordering::Relaxed);
+        say(&format!("cannot write to standard output: {error}"));
+    }
+}
+
+/// Bytes on standard output; a reader that has gone away is no error.
+///
+/// # Errors
+/// Any other failure.
+pub fn try_print(data: &[u8]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(data).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error),
+        _ => Ok(()),
+    }
 }
 
 /// Whether a person looks at standard output.
 pub fn stdout_is_terminal() -> bool {
-    std::io::stdout().is_terminal()
+    io::stdout().is_terminal()
 }

@@ -4,7 +4,7 @@ use crate::args::MeshArgs;
 use crate::batch::{Batch, BatchFailure};
 use crate::device::Device;
 use crate::drawing::write_drawings;
-use crate::exit::{Exit, print, print_bytes, say};
+use crate::exit::{Exit, print, say, try_print};
 use crate::guard::guarded;
 use crate::inputs::{Input, expand};
 use crate::messages::{error_sentence, tell};
@@ -14,7 +14,8 @@ use crate::progress::Bar;
 use crate::reading::read_model;
 use crate::whole_file::write_whole;
 use chordal::methods::Strategy;
-use chordal::{Cancel, Meshed, Mesher, OutputFormat, Report, WriteOptions};
+use chordal::write::WriteError;
+use chordal::{Cancel, Meshed, Mesher, OutputFormat, Report, RequestError, WriteOptions};
 use std::time::Instant;
 
 /// Runs the command.
@@ -127,7 +128,10 @@ impl Job<'_> {
             Target::File(path) => meshed.write_with(self.outputs.path_now(path), &options)?,
             Target::Stdout => {
                 let encoded = meshed.to_bytes_with(&options)?;
-                print_bytes(&encoded.bytes);
+                try_print(&encoded.bytes).map_err(|source| {
+                    let (path, source) = ("standard output".into(), WriteError::Io(source));
+                    chordal::Error::Request(RequestError::Write { path, source })
+                })?;
                 encoded.summary
             }
         };

@@ -1,6 +1,7 @@
 //! `chordal sew`: joins the borders of a triangle mesh.
 
 use crate::args::{FormatArg, SewArgs};
+use crate::check::cad_hint;
 use crate::exit::{Exit, print, say};
 use crate::outputs::format_of;
 use chordal::brep::issue::words::{count, length_mm};
@@ -30,7 +31,7 @@ pub fn run(args: &SewArgs) -> Exit {
             if found.open_after == 0 && found.inconsistent == 0 { Exit::Clean } else { Exit::Problems }
         }
         Err(error) => {
-            say(&error.to_string());
+            say(&format!("{error}{}", cad_hint(&args.mesh)));
             Exit::Nothing
         }
     }

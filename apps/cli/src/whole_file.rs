@@ -17,8 +17,16 @@ pub fn write_whole(path: &Path, data: &[u8]) -> io::Result<()> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder).map_err(without_temporary_name)?;
     file.write_all(data)?;
-    file.persist(path)?;
+    file.persist(path).map_err(|error| without_temporary_name(error.error))?;
     Ok(())
+}
+
+/// The name of the temporary file says nothing to users, who named another one.
+fn without_temporary_name(error: io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(_) => error,
+        None => error.kind().into(),
+    }
 }

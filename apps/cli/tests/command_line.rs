@@ -30,6 +30,47 @@ fn options_without_effect_are_refused() {
 }
 
 #[test]
+fn a_model_given_to_be_checked_gets_a_hint() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let bracket = model("bracket");
+    for ran in [run("check {}", &[&bracket]), run("sew {} -o {}", &[&bracket, &folder.path().join("a.stl")])]
+    {
+        let ran = ran.exits(&[2]).says_one_sentence();
+        assert!(ran.stderr.contains("`chordal mesh`"), "{}", ran.stderr);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn results_that_cannot_be_written_are_told() {
+    let full = |line: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_chordal"));
+        command.args(line.split(' ')).arg(model("bracket"));
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("a device");
+        let ran = command.stdout(full).output().expect("the program starts");
+        (ran.status.code(), String::from_utf8_lossy(&ran.stderr).into_owned())
+    };
+    let (code, said) = full("info");
+    assert!(code == Some(1) && said.contains("cannot write to standard output"), "{said}");
+    let (code, said) = full("mesh -o - -q");
+    assert!(code == Some(2) && said.contains("standard output: cannot write the mesh"), "{said}");
+}
+
+#[test]
+fn messages_name_no_temporary_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let bracket = model("bracket");
+    let below_a_file = folder.path().join("gone/a.svg");
+    let ran = run("compare {} --strategies default -q --tolerance 1% --plot {}", &[&bracket, &below_a_file]);
+    let ran = ran.exits(&[1]);
+    assert!(ran.stderr.contains("a.svg") && !ran.stderr.contains(".chordal-"), "{}", ran.stderr);
+    for option in ["--face-timeout", "--jobs"] {
+        let ran = run(&format!("mesh {{}} {option} -1"), &[&bracket]).exits(&[2]).says_one_sentence();
+        assert!(ran.stderr.contains("number of"), "{}", ran.stderr);
+    }
+}
+
+#[test]
 fn a_mesh_given_to_be_meshed_gets_a_hint() {
     let folder = tempfile::tempdir().expect("a folder");
     for extension in ["stl", "ply", "glb", "3mf"] {

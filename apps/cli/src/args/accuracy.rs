@@ -51,11 +51,11 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "FORMAT", value_parser = input_formats())]
     pub input_format: Option<InputFormat>,
     /// Number of threads [default: one per core]. The mesh is the same for any number.
-    #[arg(long, value_name = "N", value_parser = parse_jobs)]
+    #[arg(long, value_name = "N", value_parser = parse_jobs, allow_hyphen_values = true)]
     pub jobs: Option<usize>,
     /// Limit of processor time per face and per edge in seconds, 0 for none [default: 3; 60 with a named strategy or
     /// edge method].
-    #[arg(long, value_name = "S", value_parser = parse_seconds)]
+    #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
     pub face_timeout: Option<TimeoutArg>,
     /// Do not look for triangles of closed shells that cut each other, and do not refine where they do.
     #[arg(long)]
