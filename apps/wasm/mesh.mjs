@@ -22,7 +22,14 @@ const address = chordal.chordal_allocate(input.length);
 new Uint8Array(chordal.memory.buffer, address, input.length).set(input);
 
 const format = outputPath.endsWith(".glb") ? 1 : 0;
-const code = chordal.chordal_mesh(Number(tolerance), format);
+let code;
+try {
+  code = chordal.chordal_mesh(Number(tolerance), format);
+} catch (error) {
+  // A mesh that needs more than the 4 GiB of WebAssembly ends here.
+  console.error(`chordal: the module stopped: ${error.message}`);
+  process.exit(3);
+}
 const result = new Uint8Array(
   chordal.memory.buffer,
   chordal.chordal_result(),
