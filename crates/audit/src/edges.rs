@@ -12,6 +12,10 @@ use chordal_nurbs::{Curve, CurveInverter, DVec3, Range};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
+/// A parameter that is found nearer to a break of the curve than this part of the edge is the break: the rest
+/// is rounding. The point there is compared as well.
+const BREAK: f64 = 1e-12;
+
 /// What was recomputed about one edge.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeAudit {
@@ -71,7 +75,8 @@ fn audit_edge(
     let ends = [edge.range.start, edge.range.end].map(|t| curve.point(t));
     audit.gap = at(0).distance(ends[0]).max(at(last).distance(ends[1]));
     let rounding = ROUNDING * (precision.scale + curve_magnitude(curve));
-    let mut tracer = Tracer { curve, range: edge.range, t: edge.range.start, p: ends[0], rounding };
+    let breaks = curve.all_breaks(edge.range);
+    let mut tracer = Tracer { curve, range: edge.range, breaks, t: edge.range.start, p: ends[0], rounding };
     audit.parameters.push(edge.range.start);
     for i in 1..=last {
         let before = tracer.t;
@@ -125,6 +130,8 @@ fn wrong_origins(mesh: &PartMesh, edge: &Edge, index: usize, line: &[u32]) -> Op
 struct Tracer<'a> {
     curve: &'a Curve,
     range: Range,
+    /// Knots, corners and joints of the curve.
+    breaks: Vec<f64>,
     /// The parameter and the point found last.
     t: f64,
     p: DVec3,
@@ -152,9 +159,19 @@ impl Tracer<'_> {
                 (t, distance) = (ahead.t, ahead.distance);
             }
         }
-        self.t = t;
+        self.t = self.at_break(t, p, distance).unwrap_or(t);
         self.p = p;
         distance
+    }
+
+    /// The break of the curve that a parameter is meant to be. Beside it, a bound over the chord would take
+    /// the derivatives of both pieces.
+    fn at_break(&self, t: f64, p: DVec3, distance: f64) -> Option<f64> {
+        let beyond = self.breaks.partition_point(|&b| b < t);
+        let beside = [beyond.checked_sub(1), Some(beyond)].into_iter().flatten();
+        let near = beside.filter_map(|i| self.breaks.get(i).copied());
+        let is_same = |b: &f64| (b - t).abs() <= BREAK * self.range.length();
+        near.filter(is_same).find(|&b| self.curve.point(b).distance(p) <= distance.max(self.rounding))
     }
 
     /// Gauss–Newton: quadratic here, because the point lies on the curve.

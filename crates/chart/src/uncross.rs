@@ -24,6 +24,7 @@
 //! other way round (a bow tie of shared edges), stays as it is in the file, and is reported as not proven.
 
 mod hits;
+mod looseness;
 mod rebuild;
 mod split;
 
@@ -33,6 +34,7 @@ use chordal_brep::{EdgeId, FaceId, Loop, Part, VertexId};
 use chordal_nurbs::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
+use self::looseness::Looseness;
 pub use hits::loops_cross;
 
 /// A face whose loops cross, with its chart.
@@ -99,12 +101,13 @@ pub fn uncrossed(
 ) -> Option<Uncrossed> {
     let mut meetings = Vec::new();
     let mut ends = Vec::new();
+    let loose = Looseness::of(part, crossed, resolution);
     for one in crossed {
-        meetings.extend(hits::meetings(one.context, &one.chart, resolution, tolerance));
+        meetings.extend(hits::meetings(one.context, &one.chart, &loose, tolerance));
         ends.push(meetings.len());
     }
     let mut new = part.clone();
-    let pieces = split::split(&mut new, &meetings, resolution);
+    let pieces = split::split(&mut new, &meetings, &loose);
     let guarded = guarded(&new);
     let mut faces = Vec::new();
     let mut flat = BTreeSet::new();

@@ -362,7 +362,7 @@ impl Unroll<'_, '_> {
             winding[axis] = 1;
             let mut a = OpenLoop { points, winding, outer: true };
             let step = along_axis(across, period);
-            hold_beside(holes, &a, step, |p| p[across] / period);
+            hold_beside(holes, &a, turn, step);
             let points = shifted(&a.points, step);
             let mut b = OpenLoop { points, ..a.clone() };
             let first = if axis == 0 { &mut b } else { &mut a };

@@ -165,7 +165,7 @@ impl ReadOptions {
 }
 
 /// Which points of a surface trimming loops keep, where the format says nothing of their roles (Open Inventor, VRML and X3D): the
-/// two conventions that the survey of the Blender wiki names. The direction of the loops does not count.
+/// two conventions that the survey of the Blender wiki names. The direction of the loops counts only where loops cross.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Winding {
     /// Points that an odd number of loops goes around: the outermost loops keep their inside.

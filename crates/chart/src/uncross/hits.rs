@@ -1,11 +1,13 @@
 //! Where the loops of a face meet: crossings of chords, carried over to the exact curves, and vertices on other edges.
 
+use super::looseness::Looseness;
+use super::split::is_still;
 use super::{Meeting, Stop};
 use crate::keys::{Key, Segment};
 use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
 use chordal_brep::VertexId;
-use chordal_nurbs::{CurveInverter, DVec2, Range, orient};
+use chordal_nurbs::{CurveInverter, DVec2, DVec3, Range, orient};
 
 /// A crossing of chords is followed to the curves by this many cuts at most: each leaves a chord of half the length or far
 /// less.
@@ -104,17 +106,17 @@ fn corners_cross(s: &Side, t: &Side) -> bool {
 pub(super) fn meetings(
     context: &TrimmedFace<'_, '_>,
     chart: &Chart,
-    resolution: f64,
+    loose: &Looseness,
     tolerance: f64,
 ) -> Vec<Meeting> {
     let sides = sides(chart);
     let mut found: Vec<Meeting> = Vec::new();
     near_pairs(&sides, |s, t| {
         if cross(s.ends, t.ends) {
-            found.extend(crossing(context, [s, t], tolerance));
+            found.extend(crossing(context, [s, t], loose, tolerance));
         } else {
-            found.extend(touches(context, chart, s, t, resolution));
-            found.extend(touches(context, chart, t, s, resolution));
+            found.extend(touches(context, chart, s, t, loose.resolution));
+            found.extend(touches(context, chart, t, s, loose.resolution));
         }
         found.len() <= MOST_MEETINGS
     });
@@ -154,7 +156,12 @@ impl Stretch {
 }
 
 /// Follows two chords that cross to where their curves do.
-fn crossing(context: &TrimmedFace<'_, '_>, pair: [&Side; 2], tolerance: f64) -> Option<Meeting> {
+fn crossing(
+    context: &TrimmedFace<'_, '_>,
+    pair: [&Side; 2],
+    loose: &Looseness,
+    tolerance: f64,
+) -> Option<Meeting> {
     let mut at = [Stretch::of(context, pair[0])?, Stretch::of(context, pair[1])?];
     let mut place = [0.0; 2];
     for _ in 0..STEPS {
@@ -170,10 +177,38 @@ fn crossing(context: &TrimmedFace<'_, '_>, pair: [&Side; 2], tolerance: f64) -> 
         at = next;
     }
     let stops = [0, 1].map(|k| Stop { edge: at[k].edge, t: place[k] });
-    let points = stops.map(|s| context.part.edges[s.edge as usize].curve.as_ref().map(|c| c.point(s.t)));
-    let [Some(p), Some(q)] = points else { return None };
-    let near = p.distance(q) <= tolerance;
+    let edges = stops.map(|s| s.edge);
+    let points = points(context, stops)?;
+    if let Some(vertex) = loose.hook(context.part, edges, points) {
+        let stops = nearest_stops(context, stops)?;
+        let point = context.part.vertices[vertex.index()].point;
+        return Some(Meeting { stops: stops.to_vec(), point, vertex: Some(vertex) });
+    }
+    let [p, q] = points;
+    let near = p.distance(q) <= tolerance.max(loose.between(edges[0], edges[1]));
     near.then(|| Meeting { stops: stops.to_vec(), point: p.midpoint(q), vertex: None })
+}
+
+fn points(context: &TrimmedFace<'_, '_>, stops: [Stop; 2]) -> Option<[DVec3; 2]> {
+    let point = |s: Stop| context.part.edges[s.edge as usize].curve.as_ref().map(|c| c.point(s.t));
+    let [Some(p), Some(q)] = stops.map(point) else { return None };
+    Some([p, q])
+}
+
+/// Where two edges come nearest to each other, from a place nearby. Beside a loose vertex their chords, which end in
+/// it, cross elsewhere than the curves do.
+fn nearest_stops(context: &TrimmedFace<'_, '_>, mut stops: [Stop; 2]) -> Option<[Stop; 2]> {
+    for _ in 0..STEPS {
+        for k in 0..2 {
+            let [own, other] = [stops[k], stops[1 - k]];
+            let edges = [own, other].map(|s| &context.part.edges[s.edge as usize]);
+            let target = edges[1].curve.as_ref()?.point(other.t);
+            let found =
+                CurveInverter::new(edges[0].curve.as_deref()?, edges[0].range).invert(target, Some(own.t));
+            stops[k].t = found.t;
+        }
+    }
+    Some(stops)
 }
 
 /// How far along each of two segments their crossing lies.
@@ -218,6 +253,8 @@ fn touches(
     // Rather at a sample that is there than a hair beside it.
     let sampled = stretch.t.into_iter().find(|&t| curve.point(t).distance(point) <= resolution);
     let t = sampled.unwrap_or(nearest.t);
+    // An edge does not meet its own neighbouring chord.
+    let is_neighbour = own_stop.is_some_and(|own| own.edge == edge && is_still(curve, own.t, t, resolution));
     let stops = own_stop.into_iter().chain([Stop { edge, t }]).collect();
-    (nearest.distance <= resolution).then_some(Meeting { stops, point, vertex })
+    (nearest.distance <= resolution && !is_neighbour).then_some(Meeting { stops, point, vertex })
 }

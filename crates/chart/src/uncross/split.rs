@@ -1,6 +1,7 @@
 //! Edges cut where they meet others, for all faces that use them; edges that lie on each other become one.
 
 use super::Meeting;
+use super::looseness::Looseness;
 use chordal_brep::{Coedge, Edge, EdgeId, Loop, Part, Pcurve, Vertex, VertexId};
 use chordal_nurbs::{Curve, CurveInverter, DVec3, Range};
 use std::collections::{BTreeMap, BTreeSet};
@@ -77,7 +78,8 @@ pub(super) fn narrowed(pcurves: &[Pcurve], whole: Range, piece: Range) -> Vec<Pc
 }
 
 /// Cuts the edges of a part where they meet.
-pub(super) fn split(part: &mut Part, meetings: &[Meeting], resolution: f64) -> Pieces {
+pub(super) fn split(part: &mut Part, meetings: &[Meeting], loose: &Looseness) -> Pieces {
+    let resolution = loose.resolution;
     let stands = join_vertices(part, meetings, resolution);
     let mut wanted: BTreeMap<u32, Vec<(f64, VertexId)>> = BTreeMap::new();
     let old = part.vertices.len();
@@ -97,9 +99,9 @@ pub(super) fn split(part: &mut Part, meetings: &[Meeting], resolution: f64) -> P
         gone: Vec::new(),
     };
     for (edge, stops) in wanted {
-        cut_edge(part, edge, stops, resolution, &mut pieces);
+        cut_edge(part, edge, stops, loose, &mut pieces);
     }
-    merge(part, &mut pieces, resolution);
+    merge(part, &mut pieces, loose);
     let mut faces = std::mem::take(&mut part.faces);
     for face in &mut faces {
         for a_loop in &mut face.loops {
@@ -175,12 +177,23 @@ fn cut_edge(
     part: &mut Part,
     index: u32,
     mut stops: Vec<(f64, VertexId)>,
-    resolution: f64,
+    loose: &Looseness,
     pieces: &mut Pieces,
 ) {
+    let resolution = loose.resolution;
     let edge = part.edges[index as usize].clone();
     let Some(curve) = edge.curve.as_deref() else { return };
     stops.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    // Where a hook at an end is cut off, what else is met along it is of no account.
+    let hooks_back = |stop: &(f64, VertexId), vertex: VertexId, end: f64| {
+        stop.1 == vertex && is_still(curve, stop.0, end, loose.of_hook(index))
+    };
+    if let Some(last) = stops.iter().rposition(|stop| hooks_back(stop, edge.start, edge.range.start)) {
+        stops.drain(..last);
+    }
+    if let Some(first) = stops.iter().position(|stop| hooks_back(stop, edge.end, edge.range.end)) {
+        stops.truncate(first + 1);
+    }
     let mut kept: Vec<(f64, VertexId)> = vec![(edge.range.start, edge.start)];
     for (t, vertex) in stops {
         let (before, at) = kept[kept.len() - 1];
@@ -222,13 +235,16 @@ fn cut_edge(
 }
 
 /// True where a curve stays within the resolution between two parameters.
-fn is_still(curve: &Curve, a: f64, b: f64, resolution: f64) -> bool {
+pub(super) fn is_still(curve: &Curve, a: f64, b: f64, resolution: f64) -> bool {
     let start = curve.point(a);
     (1..=4).all(|k| curve.point(a + (b - a) * f64::from(k) / 4.0).distance(start) <= resolution)
 }
 
 /// Finds pieces that lie on other edges between the same vertices, and pieces that are points.
-fn merge(part: &Part, pieces: &mut Pieces, resolution: f64) {
+fn merge(part: &Part, pieces: &mut Pieces, loose: &Looseness) {
+    let whole: BTreeMap<EdgeId, u32> =
+        pieces.ids.iter().flat_map(|(&edge, ids)| ids.iter().map(move |&id| (id, edge))).collect();
+    let of_whole = |id: EdgeId| whole.get(&id).copied().unwrap_or(id.0);
     let made: Vec<EdgeId> = pieces.ids.values().flatten().copied().collect();
     let mut between: BTreeMap<[VertexId; 2], Vec<EdgeId>> = BTreeMap::new();
     let key = |e: &Edge| [e.start.min(e.end), e.start.max(e.end)];
@@ -244,14 +260,16 @@ fn merge(part: &Part, pieces: &mut Pieces, resolution: f64) {
         for (k, &one) in group.iter().enumerate() {
             let edge = &part.edges[one.index()];
             let Some(curve) = edge.curve.as_deref() else { continue };
-            if edge.start == edge.end && is_still(curve, edge.range.start, edge.range.end, resolution) {
+            if edge.start == edge.end
+                && is_still(curve, edge.range.start, edge.range.end, loose.of_hook(of_whole(one)))
+            {
                 pieces.gone.push(one);
                 continue;
             }
             let same = group[..k].iter().find_map(|&other| {
                 let is_free = !pieces.merged.contains_key(&other.0) && !pieces.gone.contains(&other);
-                let same_way =
-                    is_free.then(|| lies_on(edge, &part.edges[other.index()], resolution)).flatten();
+                let apart = loose.between(of_whole(one), of_whole(other));
+                let same_way = is_free.then(|| lies_on(edge, &part.edges[other.index()], apart)).flatten();
                 same_way.map(|same_way| (other, same_way))
             });
             if let Some(same) = same {
@@ -261,16 +279,26 @@ fn merge(part: &Part, pieces: &mut Pieces, resolution: f64) {
     }
 }
 
-/// Whether an edge lies on another one between the same vertices, and then whether both run the same way.
-fn lies_on(one: &Edge, other: &Edge, resolution: f64) -> Option<bool> {
+/// Edges shorter than so many times what they may lie apart have no direction of their own.
+const SHORT: f64 = 4.0;
+
+/// Whether an edge lies on another one between the same two vertices, and then whether both run the same way.
+fn lies_on(one: &Edge, other: &Edge, apart: f64) -> Option<bool> {
     let (a, b) = (one.curve.as_deref()?, other.curve.as_deref()?);
     let at = |k: u32| one.range.start + one.range.length() * f64::from(k) / 8.0;
     let inverter = CurveInverter::new(b, other.range);
     let found: Vec<(f64, DVec3)> =
         (1..8).map(|k| (inverter.invert(a.point(at(k)), None).t, a.point(at(k)))).collect();
-    let near = found.iter().all(|(t, p)| b.point(*t).distance(*p) <= resolution);
+    let near = found.iter().all(|(t, p)| b.point(*t).distance(*p) <= apart);
     // Both are short of being the same stretch where one goes round and the other does not.
     let rises = found.windows(2).all(|pair| pair[1].0 > pair[0].0);
     let falls = found.windows(2).all(|pair| pair[1].0 < pair[0].0);
+    if one.start != one.end && is_short(one, a, apart) && is_short(other, b, apart) {
+        return Some(one.start == other.start);
+    }
     (near && (rises || falls)).then_some(rises)
+}
+
+fn is_short(edge: &Edge, curve: &Curve, apart: f64) -> bool {
+    is_still(curve, edge.range.start, edge.range.end, SHORT * apart)
 }

@@ -25,7 +25,7 @@
 //!
 //! Not guaranteed: where loops cross each other, there may be no such chain.
 
-use super::{area, mean};
+use super::area;
 use crate::keys::ChartPoint;
 use crate::trimmed_face::OpenLoop;
 use chordal_nurbs::DVec2;
@@ -80,10 +80,17 @@ pub(super) struct Cuts<'a> {
     /// Lengths in space of steps in u and v.
     lengths: DVec2,
     walls: Vec<Wall>,
+    /// Holes i and i + `count` are the same, elsewhere.
+    count: usize,
 }
 
-/// The search for a cut ends after so many comparisons of hops with sides: about a tenth of a second.
-const MOST_COMPARISONS: usize = 20_000_000;
+/// The search for a cut ends after so many comparisons of hops with sides, most of which the boxes of loops
+/// settle: about half a second at most.
+const MOST_COMPARISONS: usize = 200_000_000;
+
+/// Loops that run further across a closed surface than so many steps are not compared with all of their own
+/// repetitions.
+const MOST_STEPS: f64 = 16.0;
 
 /// Hops that are tested however many sides there are.
 const LEAST_TESTS: usize = 256;
@@ -94,6 +101,34 @@ struct Wall {
     /// The turns that it reaches over.
     from: f64,
     to: f64,
+    /// Its box.
+    low: DVec2,
+    high: DVec2,
+}
+
+impl Wall {
+    fn new(points: Vec<DVec2>, turn: DVec2) -> Self {
+        let mut wall = Self {
+            points,
+            from: f64::INFINITY,
+            to: f64::NEG_INFINITY,
+            low: DVec2::INFINITY,
+            high: DVec2::NEG_INFINITY,
+        };
+        for &p in &wall.points {
+            let turns = p.dot(turn) / turn.length_squared();
+            (wall.from, wall.to) = (wall.from.min(turns), wall.to.max(turns));
+            (wall.low, wall.high) = (wall.low.min(p), wall.high.max(p));
+        }
+        wall
+    }
+
+    /// True where one of its sides lies in the way of a hop.
+    fn is_in_the_way(&self, hop: [DVec2; 2], clearance: f64) -> bool {
+        let (low, high) = (hop[0].min(hop[1]) - clearance, hop[0].max(hop[1]) + clearance);
+        let meets = low.cmple(self.high).all() && high.cmpge(self.low).all();
+        meets && self.points.windows(2).any(|side| is_blocked_by(hop, [side[0], side[1]], clearance))
+    }
 }
 
 /// A hop that may be free.
@@ -147,30 +182,32 @@ impl<'a> Cuts<'a> {
             let closing = [0, 1].map(|k| f64::from(open.winding[k]) * periods[k].unwrap_or(0.0));
             let mut points: Vec<DVec2> = open.points.iter().map(|p| p.uv * lengths).collect();
             points.push(points[0] + DVec2::from(closing) * lengths);
-            let turns = points.iter().map(|p| p.dot(scaled_turn) / scaled_turn.length_squared());
-            let (from, to) = turns.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
-            Wall { points, from, to }
+            Wall::new(points, scaled_turn)
         };
         let of_side = |side: &Side<'a>| match side {
             Side::Loop(open) => Some(*open),
             Side::Pole(_) => None,
         };
         let walls = sides.iter().filter_map(of_side).chain(holes).map(wall).collect();
-        Self { sides, holes, axis, turn, lengths, walls }
+        Self { sides, holes, axis, turn, lengths, walls, count: holes.len() }
     }
 
-    /// On a surface that is closed across, too, loops lie in the way in these places as well.
-    pub fn repeat_walls(&mut self, steps: [DVec2; 2]) {
-        let turn = self.turn * self.lengths;
-        let moved = |wall: &Wall, step: DVec2| {
-            let turns = step.dot(turn) / turn.length_squared();
-            let points = wall.points.iter().map(|&p| p + step).collect();
-            Wall { points, from: wall.from + turns, to: wall.to + turns }
-        };
-        let mut repeated = Vec::with_capacity(2 * self.walls.len());
-        for step in steps.map(|step| step * self.lengths) {
-            repeated.extend(self.walls.iter().map(|wall| moved(wall, step)));
-        }
+    /// On a surface that is closed across, too, all loops lie in the way one `step` and more on, to either
+    /// side. The first `count` holes are all that there are; the others are the same, elsewhere.
+    pub fn repeat_across(&mut self, step: DVec2, count: usize) {
+        let holes = self.walls.len() - self.holes.len();
+        self.walls.truncate(holes + count);
+        self.count = count;
+        let (turn, step) = (self.turn * self.lengths, step * self.lengths);
+        let across = |p: &DVec2| turn.perp_dot(*p) / turn.perp_dot(step);
+        let places = || self.walls.iter().flat_map(|wall| &wall.points).map(across);
+        let (low, high) = places().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
+        let far = (high - low).ceil().clamp(1.0, MOST_STEPS) as i64;
+        let moved =
+            |wall: &Wall, step: DVec2| Wall::new(wall.points.iter().map(|&p| p + step).collect(), turn);
+        let steps = (-far..=far).filter(|&k| k != 0).map(|k| step * k as f64);
+        let repeated: Vec<Wall> =
+            steps.flat_map(|step| self.walls.iter().map(move |wall| moved(wall, step))).collect();
         self.walls.extend(repeated);
     }
 
@@ -187,9 +224,7 @@ impl<'a> Cuts<'a> {
             let last = (high - wall.from).floor() as i64;
             (first..=last).all(|k| {
                 let by = turn * k as f64;
-                wall.points
-                    .windows(2)
-                    .all(|side| !is_blocked_by([p - by, q - by], [side[0], side[1]], clearance))
+                !wall.is_in_the_way([p - by, q - by], clearance)
             })
         })
     }
@@ -254,7 +289,9 @@ impl<'a> Cuts<'a> {
         let Some(own) = reached[node] else { return };
         for other in (1..reached.len()).filter(|&k| k != node && reached[k].is_none()) {
             // A piece of the face within a hole lies on no way across the face.
-            if other <= self.holes.len() && area(&self.holes[other - 1].points) > 0.0 {
+            let is_hole = other <= self.holes.len();
+            if is_hole && (area(&self.holes[other - 1].points) > 0.0 || self.is_passed(other, node, reached))
+            {
                 continue;
             }
             let mut hops = self.hops(node, &own, other);
@@ -264,6 +301,16 @@ impl<'a> Cuts<'a> {
             }
             heap.extend(hops);
         }
+    }
+
+    /// True where a hole is, elsewhere, on the way to a node: a cut leads through each hole once.
+    fn is_passed(&self, hole: usize, node: usize, reached: &[Option<Reached>]) -> bool {
+        if self.count == self.holes.len() {
+            return false;
+        }
+        let same = |node: usize| (node.wrapping_sub(1)) % self.count == (hole - 1) % self.count;
+        let way = std::iter::successors(Some(node), |&at| Some(reached[at]?.hop?.from.node));
+        way.take_while(|&at| at > 0).any(same)
     }
 
     /// All hops from one node to another.
@@ -358,15 +405,75 @@ pub(super) fn whole_turns(d: DVec2, turn: DVec2) -> f64 {
     (d.dot(turn) / turn.length_squared()).round()
 }
 
-/// Moves holes by whole `step`s across to where the face lies: between the loop `a` and the place one step
-/// on. `across` tells, in steps, how far across a place lies.
-pub(super) fn hold_beside(holes: &mut [OpenLoop], a: &OpenLoop, step: DVec2, across: impl Fn(DVec2) -> f64) {
-    let place = |open: &OpenLoop| across(DVec2::new(mean(&open.points, 0), mean(&open.points, 1)));
-    let from = place(a);
+/// Moves holes by whole `step`s across to where the face lies: between the loop `a`, which goes on by whole
+/// `turn`s, and the same loop one step on.
+pub(super) fn hold_beside(holes: &mut [OpenLoop], a: &OpenLoop, turn: DVec2, step: DVec2) {
+    let border = Border::new(a, turn, step);
     for hole in holes {
-        let by = (place(hole) - from).floor();
+        let by = border.steps_into(hole);
         if by != 0.0 {
             hole.points = super::shifted(&hole.points, -step * by);
         }
+    }
+}
+
+/// A loop that goes on by whole turns, in coordinates of turns and steps.
+struct Border {
+    turn: DVec2,
+    step: DVec2,
+    /// The points, the first one repeated one turn on.
+    points: Vec<DVec2>,
+    middle: f64,
+}
+
+/// Steps to either side of where the middle of a hole lies that are tried: borders that run far forwards and
+/// back have their middle elsewhere.
+const STEPS_ASIDE: i32 = 4;
+
+impl Border {
+    fn new(a: &OpenLoop, turn: DVec2, step: DVec2) -> Self {
+        let mut border = Self { turn, step, points: Vec::new(), middle: 0.0 };
+        border.points = a.points.iter().map(|p| border.place(p.uv)).collect();
+        border.middle = border.points.iter().map(|p| p.y).sum::<f64>() / border.points.len() as f64;
+        border.points.push(border.points[0] + DVec2::X);
+        border
+    }
+
+    /// A place in turns and steps.
+    fn place(&self, p_uv: DVec2) -> DVec2 {
+        DVec2::new(p_uv.perp_dot(self.step), self.turn.perp_dot(p_uv)) / self.turn.perp_dot(self.step)
+    }
+
+    /// How many steps a hole lies beyond the strip between the border and the next one.
+    fn steps_into(&self, hole: &OpenLoop) -> f64 {
+        let places: Vec<DVec2> = hole.points.iter().map(|p| self.place(p.uv)).collect();
+        let mean = places.iter().map(|p| p.y).sum::<f64>() / places.len() as f64;
+        let guess = (mean - self.middle).floor();
+        let beside = |by: f64| {
+            let held = |p: &&DVec2| {
+                let p = **p - DVec2::Y * by;
+                self.is_beyond(p) && !self.is_beyond(p - DVec2::Y)
+            };
+            2 * places.iter().filter(held).count() > places.len()
+        };
+        let aside = (1..=STEPS_ASIDE).flat_map(|k| [k, -k]);
+        let mut tried = std::iter::once(0).chain(aside).map(|k| guess + f64::from(k));
+        tried.find(|&by| beside(by)).unwrap_or(guess)
+    }
+
+    /// True where the border lies between a place and what is far behind it.
+    fn is_beyond(&self, p: DVec2) -> bool {
+        let crossings = self.points.windows(2).map(|side| {
+            let (a, b) = (side[0], side[1]);
+            let (low, high) = (a.x.min(b.x), a.x.max(b.x));
+            // Turns k with low + k <= p.x < high + k.
+            let (first, last) = ((p.x - high).floor() as i64 + 1, (p.x - low).floor() as i64);
+            let behind = |&k: &i64| {
+                let share = (p.x - k as f64 - a.x) / (b.x - a.x);
+                a.y + (b.y - a.y) * share < p.y
+            };
+            (first..=last).filter(behind).count()
+        });
+        crossings.sum::<usize>() % 2 == 1
     }
 }

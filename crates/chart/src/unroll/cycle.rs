@@ -12,7 +12,7 @@
 //! The side with the face on the left of the way up follows each hole from where the cut enters it to where
 //! it leaves it; the other side, on the way down, follows the rest of the hole.
 
-use super::cuts::{Cuts, Hop, Side, hold_beside};
+use super::cuts::{Cuts, Hop, Side};
 use super::winding::part_of;
 use super::{Unroll, area, shifted};
 use crate::keys::{ChartPoint, Segment};
@@ -28,16 +28,17 @@ impl Unroll<'_, '_> {
         let start = holes[root].clone();
         let mut others = holes.clone();
         others.remove(root);
-        hold_beside(&mut others, &start, step, |p| p.y / period_v);
+        let count = others.len();
+        let repeated = repeated(&others, &start, step);
         let end = OpenLoop { points: shifted(&start.points, step), ..start.clone() };
         let lengths = self.lengths_at(start.points[0].uv);
         let sides = [Side::Loop(&start), Side::Loop(&end)];
-        let mut cuts = Cuts::new(sides, &others, 0, turn, lengths, self.context.surface.periods);
-        cuts.repeat_walls([step, -step]);
+        let mut cuts = Cuts::new(sides, &repeated, 0, turn, lengths, self.context.surface.periods);
+        cuts.repeat_across(step, count);
         let hops = cuts.chain()?;
         drop(cuts);
-        let winding = self.sides_of_cycle(&start, &hops, &others, step);
-        let mut passed: Vec<usize> = hops[1..].iter().map(|hop| hop.from.node - 1).collect();
+        let winding = self.sides_of_cycle(&start, &hops, &repeated, step);
+        let mut passed: Vec<usize> = hops[1..].iter().map(|hop| (hop.from.node - 1) % count).collect();
         passed.sort_unstable();
         for &hole in passed.iter().rev() {
             others.remove(hole);
@@ -94,3 +95,32 @@ impl Unroll<'_, '_> {
         vec![open(up, [turns, 1]), open(down, [-turns, -1])]
     }
 }
+
+/// The holes as often as they lie, whole steps on, between a loop and the same loop one step on.
+fn repeated(holes: &[OpenLoop], start: &OpenLoop, step: DVec2) -> Vec<OpenLoop> {
+    let reach = |points: &[ChartPoint]| {
+        let along = points.iter().map(|p| p.uv.y / step.y);
+        along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(t), high.max(t)))
+    };
+    let (low, high) = reach(&start.points);
+    let of_holes: Vec<(i32, i32)> = holes
+        .iter()
+        .map(|hole| {
+            let own = reach(&hole.points);
+            // Steps k with own.0 + k <= high + 1 and own.1 + k >= low.
+            ((low - own.1).ceil() as i32, (high + 1.0 - own.0).floor() as i32)
+        })
+        .collect();
+    let most = of_holes.iter().map(|(first, last)| (last - first).clamp(0, MOST_PLACES)).max().unwrap_or(0);
+    let place = |k: i32| {
+        let moved = move |(hole, (first, last)): (&OpenLoop, &(i32, i32))| {
+            let by = step * f64::from((first + k).min(*last));
+            OpenLoop { points: shifted(&hole.points, by), ..hole.clone() }
+        };
+        holes.iter().zip(&of_holes).map(moved)
+    };
+    (0..=most).flat_map(place).collect()
+}
+
+/// A hole is tried in so many places at most, beyond the first.
+const MOST_PLACES: i32 = 16;

@@ -49,17 +49,16 @@ impl Unroll<'_, '_> {
                 if let Some(period) = self.context.surface.periods[across] {
                     let step =
                         along_axis(across, if value > mean(&a.points, across) { period } else { -period });
-                    hold_beside(holes, &a, step, |p| p[across] / step[across]);
+                    hold_beside(holes, &a, turn, step);
                 }
                 Ok(self.between_sides([Side::Loop(&a), Side::Pole(value)], axis, turn, holes))
             }
             2 => {
                 let (a, b) = self.pair(winding, axis);
-                if let Some(period) = self.context.surface.periods[across] {
-                    let step = along_axis(across, period);
-                    hold_beside(holes, &a, step, |p| p[across] / period);
-                }
                 let turn = along_axis(axis, period * f64::from(a.winding[axis]));
+                if let Some(period) = self.context.surface.periods[across] {
+                    hold_beside(holes, &a, turn, along_axis(across, period));
+                }
                 Ok(self.between_sides([Side::Loop(&a), Side::Loop(&b)], axis, turn, holes))
             }
             loops => Err(MeshIssue::ManyEncirclingLoops { loops }),
@@ -111,7 +110,7 @@ impl Unroll<'_, '_> {
         let by = -(of_loop(&b) - of_loop(&a)).floor();
         let step = turns((m, n)) * periods;
         b.points = shifted(&b.points, step * by);
-        hold_beside(holes, &a, step, across);
+        hold_beside(holes, &a, turns((i, j)) * periods, step);
         Ok(self.between_sides([Side::Loop(&a), Side::Loop(&b)], 0, turns((i, j)) * periods, holes))
     }
 

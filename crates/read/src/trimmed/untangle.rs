@@ -9,12 +9,14 @@
 //! | the format | inside |
 //! |---|---|
 //! | tells outer loops from holes | more outer loops than holes go round it |
-//! | does not; odd convention | an odd number of loops goes round it |
+//! | does not; odd convention | as above, where loops cross and run both ways ([`direction`]); else an odd number of loops goes round it |
 //! | does not; even convention | an even number of loops goes round it |
 //!
 //! Chains that meet nowhere but bound the region as they are come back unchanged, so that sound files keep their loops.
 //!
 //! Not guaranteed: loops round a period of the surface are left alone, and loops are not compared across its seam.
+
+mod direction;
 
 use super::chain::Chain;
 use super::meet::{Flat, ONE_PLACE, flattened, meetings};
@@ -92,7 +94,7 @@ fn rebuilt(chains: &[Chain], scale: &Scale) -> Option<(Vec<Chain>, bool, usize)>
         return None;
     }
     let (strands, first) = strands(&cut, &ends, &nodes);
-    let rule = Rule { roles: chains.iter().map(|c| c.role).collect() };
+    let rule = Rule { roles: direction::roles(chains, scale) };
     let found = outlines(&strands, chains.len(), &|w| rule.is_inside(w))?;
     if met.crossings == 0 && is_as_given(&strands, &found.sides, chains) {
         return None;

@@ -87,7 +87,11 @@ fn an_eight_keeps_both_lobes_by_every_convention() {
 
 #[test]
 fn two_loops_that_cross() {
-    near(area(&[polygon(&A, ODD), polygon(&B, ODD)]), 0.48 + 0.12 - 2.0 * 0.06);
+    // They run opposite ways: what lies on the right of one is cut off. If both run the same way, all that is known is how many
+    // go round a place.
+    near(area(&[polygon(&A, ODD), polygon(&B, ODD)]), 0.42);
+    let back: Vec<(f64, f64)> = B.iter().rev().copied().collect();
+    near(area(&[polygon(&A, ODD), polygon(&back, ODD)]), 0.48 + 0.12 - 2.0 * 0.06);
     near(area(&[polygon(&A, EVEN), polygon(&B, EVEN)]), 1.0 - 0.48);
     near(area(&[polygon(&A, Role::Outer), polygon(&B, Role::Hole)]), 0.42);
     near(area(&[polygon(&A, Role::Outer), polygon(&B, Role::Outer)]), 0.54);
@@ -151,7 +155,12 @@ proptest! {
                 if *round {
                     disc((inside(corners[0].0), inside(corners[0].1)), *radius, role)
                 } else {
-                    let corners: Vec<_> = corners.iter().map(|&(x, y)| (place(x), place(y))).collect();
+                    let mut corners: Vec<_> = corners.iter().map(|&(x, y)| (place(x), place(y))).collect();
+                    // All run the same way: else the direction counts where it is all that there is.
+                    let points: Vec<DVec2> = corners.iter().map(|&c| DVec2::from(c)).collect();
+                    if polygon::area(&points) < 0.0 {
+                        corners.reverse();
+                    }
                     polygon(&corners, role)
                 }
             })
