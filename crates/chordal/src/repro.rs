@@ -217,7 +217,7 @@ impl std::fmt::Display for FaceName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             FaceName::Entity(entity) => write!(f, "#{entity}"),
-            FaceName::Index(index) => write!(f, "at {index}"),
+            FaceName::Index(index) => write!(f, "@{index}"),
         }
     }
 }
