@@ -43,7 +43,7 @@ def main() -> None:
     print("model\ttolerance\texit\tclosed\topen\tfilled\tby smaller limits\tcrossing pairs reported\tnot filled")
     for model in args.models:
         for tolerance in args.tolerance.split(","):
-            row = check(args.binary, model, tolerance)
+            row = check(args.binary.absolute(), model, tolerance)
             failed += row.pop()
             print("\t".join(map(str, [Path(model).name, tolerance, *row])), flush=True)
     sys.exit(1 if failed else 0)
