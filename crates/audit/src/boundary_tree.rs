@@ -56,6 +56,8 @@ impl Chains {
 pub(crate) struct Side {
     pub a: DVec2,
     pub b: DVec2,
+    /// Where it lies is not known well enough to say what it crosses.
+    pub is_loose: bool,
 }
 
 impl Side {
@@ -92,7 +94,7 @@ impl BoundaryTree {
 
     /// The same moved by a vector.
     pub fn moved(&self, by: DVec2) -> Self {
-        Self::new(self.sides.iter().map(|s| Side { a: s.a + by, b: s.b + by }).collect())
+        Self::new(self.sides.iter().map(|s| Side { a: s.a + by, b: s.b + by, ..*s }).collect())
     }
 
     /// Calls `visit` once for every two sides whose boxes meet.
@@ -220,7 +222,7 @@ mod tests {
         prop::collection::vec(prop::array::uniform4(0.0..1.0f64), 0..60).prop_map(|all| {
             let side = |[x, y, dx, dy]: [f64; 4]| {
                 let a = DVec2::new(x, y);
-                Side { a, b: a + 0.3 * (DVec2::new(dx, dy) - 0.5) }
+                Side { a, b: a + 0.3 * (DVec2::new(dx, dy) - 0.5), is_loose: false }
             };
             all.into_iter().map(side).collect()
         })
@@ -270,7 +272,8 @@ mod tests {
             let corners = [(-r, -r), (r, -r), (r, r), (-r, r)].map(DVec2::from);
             (0..4).map(move |i| {
                 let (a, b) = (corners[i], corners[(i + 1) % 4]);
-                if turned { Side { a: b, b: a } } else { Side { a, b } }
+                let (a, b) = if turned { (b, a) } else { (a, b) };
+                Side { a, b, is_loose: false }
             })
         };
         let tree = BoundaryTree::new(square(2.0, false).chain(square(1.0, true)).collect());

@@ -7,6 +7,15 @@ use chordal_mesh::FaceMesh;
 use chordal_nurbs::{DVec2, DVec3, Pole, Surface, UvBox, Wrap};
 use std::borrow::Cow;
 
+/// Where a corner lies on a pole.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtPole {
+    /// The parameter that is constant at the pole.
+    pub axis: usize,
+    /// Its value there, in the period of the corner.
+    pub value: f64,
+}
+
 /// A face's mesh in the parameters of its surface.
 pub(crate) struct Chart<'a> {
     pub surface: &'a Surface,
@@ -15,8 +24,10 @@ pub(crate) struct Chart<'a> {
     pub wrap: Wrap,
     periods: [Option<f64>; 2],
     pub poles: Vec<Pole>,
-    /// Of every corner the axis of the pole that it lies on; empty without poles.
-    pole_axes: Vec<Option<u8>>,
+    /// The poles are points but for rounding, and not sides that are short against the tolerance.
+    pub poles_are_points: bool,
+    /// Of every corner the pole that it lies on; empty without poles.
+    at_poles: Vec<Option<AtPole>>,
     /// The surface at every corner.
     pub xyz: Vec<DVec3>,
     /// Its derivatives by u and v there.
@@ -39,21 +50,28 @@ pub(crate) fn turned_triangles(mesh: &FaceMesh) -> usize {
 
 impl<'a> Chart<'a> {
     pub fn new(context: &Context<'_>, surface: &'a Surface, mesh: &'a FaceMesh) -> Self {
+        Self::of(surface, mesh, context.scale, context.same_point)
+    }
+
+    /// The chart of a mesh with coordinates up to `scale`; points within `same_point` may be one vertex.
+    pub fn of(surface: &'a Surface, mesh: &'a FaceMesh, scale: f64, same_point: f64) -> Self {
         let mut chart = Self {
             surface,
             mesh,
             uv_box: UvBox::from_points(mesh.corners.iter().map(|c| c.uv)),
             wrap: Wrap::of(surface),
             periods: surface.periods(),
-            poles: surface.poles_within(context.same_point),
-            pole_axes: Vec::new(),
+            poles: surface.poles_within(same_point),
+            poles_are_points: false,
+            at_poles: Vec::new(),
             xyz: Vec::new(),
             derivatives: Vec::new(),
-            rounding: ROUNDING * (context.scale + surface_magnitude(surface)),
+            rounding: ROUNDING * (scale + surface_magnitude(surface)),
             turned: false,
         };
         if !chart.poles.is_empty() {
-            chart.pole_axes = mesh.corners.iter().map(|c| chart.pole_at(c.uv)).collect();
+            chart.poles_are_points = surface.poles_within(chart.rounding).len() == chart.poles.len();
+            chart.at_poles = mesh.corners.iter().map(|c| chart.pole_at(c.uv)).collect();
         }
         chart
     }
@@ -73,19 +91,25 @@ impl<'a> Chart<'a> {
         DVec2::new(turn(d.x, self.periods[0]), turn(d.y, self.periods[1]))
     }
 
-    /// The axis of the pole that a corner lies on.
-    pub fn pole_axis(&self, corner: u32) -> Option<usize> {
-        self.pole_axes.get(corner as usize).copied().flatten().map(usize::from)
+    /// The pole that a corner lies on.
+    pub fn at_pole(&self, corner: u32) -> Option<AtPole> {
+        self.at_poles.get(corner as usize).copied().flatten()
     }
 
-    fn pole_at(&self, uv: DVec2) -> Option<u8> {
-        let at = |pole: &&Pole| {
+    /// The axis of the pole that a corner lies on.
+    pub fn pole_axis(&self, corner: u32) -> Option<usize> {
+        self.at_pole(corner).map(|pole| pole.axis)
+    }
+
+    fn pole_at(&self, uv: DVec2) -> Option<AtPole> {
+        let at = |pole: &Pole| {
             let (t, axis) = (uv[pole.axis], pole.axis);
-            let off = t - pole.value;
-            let off = off - self.periods[axis].map_or(0.0, |p| p * (off / p).round());
-            off.abs() <= 1e-9 * (t.abs() + pole.value.abs() + self.uv_box.size()[axis])
+            let turns = self.periods[axis].map_or(0.0, |p| p * ((t - pole.value) / p).round());
+            let value = pole.value + turns;
+            let near = 1e-9 * (t.abs() + pole.value.abs() + self.uv_box.size()[axis]);
+            ((t - value).abs() <= near).then_some(AtPole { axis, value })
         };
-        self.poles.iter().find(at).map(|pole| pole.axis as u8)
+        self.poles.iter().find_map(at)
     }
 
     /// One end of the half-edge lies on a pole.

@@ -11,7 +11,7 @@ use crate::precision::CHUNK;
 use crate::prove;
 use crate::region::{LoopSide, check_region, loop_side};
 use crate::report::FaceAudit;
-use crate::sampled::check_samples;
+use crate::second_bound::check_second_bound;
 use chordal_brep::issue::MeshDefect;
 use chordal_brep::{AuditIssue, Face, FaceGeometry, Loop};
 use chordal_mesh::{FaceMesh, Origin};
@@ -74,8 +74,9 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     if found.duplicates > 0 {
         log.add(AuditIssue::DuplicateTriangles { triangles: found.duplicates });
     }
-    prove::prove(context, &chart, &bounds_of, &mut found, &mut log);
-    check_samples(context, &chart, &bounds_of, &found, &mut log);
+    let sides = prove::sides(&chart, &bounds_of);
+    prove::prove(context, &chart, &bounds_of, &sides, &mut found, &mut log);
+    check_second_bound(context, &chart, &sides, &found, &mut log);
     found.audit.proven_error = found.error + context.options.coordinate_rounding;
     found.problems = log.problems;
     found

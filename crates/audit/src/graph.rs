@@ -39,7 +39,9 @@ pub(crate) fn is_graph(mesh: &PartMesh, of_face: &FaceMesh) -> bool {
 fn is_simple(of_face: &FaceMesh, seen: &impl Fn(u32) -> DVec2) -> bool {
     let halves = Halves::of(&of_face.triangles, of_face.corners.len());
     let chains = Chains::of(&halves.single, of_face.corners.len());
-    let tree = BoundaryTree::new(chains.halves.iter().map(|h| Side { a: seen(h.a), b: seen(h.b) }).collect());
+    let tree = BoundaryTree::new(
+        chains.halves.iter().map(|h| Side { a: seen(h.a), b: seen(h.b), is_loose: false }).collect(),
+    );
     let mut touching = false;
     tree.own_pairs(&mut |s, t| touching |= touch(s, t));
     let inside = |range: &std::ops::Range<usize>| {

@@ -1,20 +1,21 @@
 //! The audit of a finished mesh against the exact model.
 //!
 //! It uses the model and the mesh, and nothing of the mesher. With the mesher it shares the crate `nurbs`:
-//! evaluation, inversion, and the bounds of facets and chords; the bound of facets is therefore measured at
-//! points as well.
+//! evaluation, inversion, and the bounds of facets and chords; a share of the facets therefore gets a second
+//! bound that shares no code with the first.
 //!
 //! - Edges are sampled on their curves and in order (`edges`).
 //! - Each face is bounded by exactly the chords of its edges (`boundary`).
 //! - It covers the right part of its surface (`region`), once (`overlap`), with the area that its exact loops
 //!   bound (`area`).
-//! - The error bounds hold (`prove`), and measured points do not exceed them (`sampled`).
+//! - The error bounds hold (`prove`), and for a share of the facets a second, simple one (`second_bound`).
 //! - Each shell is closed and oriented by the identity of its vertices (`shell`), and no facets of a closed
 //!   shell cut each other (`self_intersections`).
 //!
 //! Of two meshes of which nothing else is known, [`largest_distance`] gives the distance by branch and bound.
 
 mod area;
+mod bend;
 mod boundary;
 mod boundary_tree;
 mod chart;
@@ -34,7 +35,7 @@ mod precision;
 mod prove;
 mod region;
 mod report;
-mod sampled;
+mod second_bound;
 mod self_intersections;
 mod separation;
 mod shell;

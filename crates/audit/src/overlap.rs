@@ -12,7 +12,8 @@
 //!
 //! At a pole the chart has many points for one of the surface. A side that ends there runs along the parameter
 //! line through its other end, as the chord does seen from the axis; where the boundary passes through the
-//! pole, it goes on along the line of the chart that the pole is (see [`crate::fan`]).
+//! pole, it goes on along the line of the chart that the pole is (see [`crate::fan`]). Sides that end
+//! at a side of the surface that is only short, and no point, are left out of the first check.
 //!
 //! Signs of areas are exact; only against moved boundaries, whose coordinates are rounded, a crossing must be
 //! wider than rounding.
@@ -55,19 +56,22 @@ pub(crate) fn overlaps(chart: &Chart<'_>, single: &[Half]) -> usize {
 fn sides(chart: &Chart<'_>, chains: &Chains) -> Vec<Side> {
     let mut sides = Vec::with_capacity(chains.halves.len());
     let uv = |corner: u32| chart.mesh.corners[corner as usize].uv;
-    let oriented = |a, b| if chart.turned { Side { a: b, b: a } } else { Side { a, b } };
-    if chart.poles.is_empty() {
-        sides.extend(chains.halves.iter().map(|h| oriented(uv(h.a), uv(h.b))));
+    let oriented = |a, b, is_loose| {
+        let (a, b) = if chart.turned { (b, a) } else { (a, b) };
+        Side { a, b, is_loose }
+    };
+    if !chart.poles_are_points {
+        sides.extend(chains.halves.iter().map(|h| oriented(uv(h.a), uv(h.b), chart.touches_pole(h))));
         return sides;
     }
     for range in &chains.ranges {
         let halves = &chains.halves[range.clone()];
         for (i, half) in halves.iter().enumerate() {
             let [a, b] = beside_poles(chart, half);
-            sides.push(oriented(a, b));
+            sides.push(oriented(a, b, false));
             let [next, _] = beside_poles(chart, &halves[(i + 1) % halves.len()]);
             if next != b {
-                sides.push(oriented(b, next));
+                sides.push(oriented(b, next, false));
             }
         }
     }
@@ -83,7 +87,7 @@ fn cross(s: &Side, t: &Side, depth: f64) -> bool {
         c * d < 0.0 && c.abs() > least && d.abs() > least
     };
     // Sides that follow each other only touch.
-    s.b != t.a && s.a != t.b && apart(s, t) && apart(t, s)
+    !s.is_loose && !t.is_loose && s.b != t.a && s.a != t.b && apart(s, t) && apart(t, s)
 }
 
 /// One place inside the face beside each chain of its boundary: the middle of its largest triangle there.
@@ -101,12 +105,12 @@ fn places_inside(chart: &Chart<'_>, chains: &Chains) -> Vec<DVec2> {
     chains.ranges.iter().filter_map(place).collect()
 }
 
-/// The middle of a triangle in the chart; of one with a corner at a pole, of what it stands for.
+/// The middle of a triangle in the chart; of one with a single corner at a pole, of what it stands for.
 fn middle(chart: &Chart<'_>, triangle: u32) -> DVec2 {
-    let t = &chart.mesh.triangles[triangle as usize];
+    let poles = chart.mesh.triangles[triangle as usize].map(|c| chart.pole_axis(c));
     let mut uv = corners(chart, triangle);
-    for i in 0..3 {
-        if let Some(axis) = chart.pole_axis(t[i]) {
+    if chart.poles_are_points && poles.iter().flatten().count() == 1 {
+        for (i, axis) in poles.iter().enumerate().filter_map(|(i, axis)| Some((i, (*axis)?))) {
             uv[i][1 - axis] = 0.5 * (uv[(i + 1) % 3][1 - axis] + uv[(i + 2) % 3][1 - axis]);
         }
     }

@@ -12,10 +12,23 @@ use chordal_brep::AuditIssue;
 use chordal_nurbs::{Facet, Piece, Surface, SurfaceBounds, facet_bound};
 use rayon::prelude::*;
 
+/// Of each triangle the sides, as the bounds see them; of a plane none.
+pub(crate) fn sides(chart: &Chart<'_>, at: &Boundary) -> Vec<[Side; 3]> {
+    if matches!(chart.surface, Surface::Plane { .. }) {
+        return Vec::new();
+    }
+    let mut sides = vec![[Side::Inner; 3]; chart.mesh.triangles.len()];
+    for chord in &at.chords {
+        sides[chord.half.triangle as usize][chord.half.side as usize] = Side::Chord(chord.sag);
+    }
+    sides
+}
+
 pub(crate) fn prove(
     context: &Context<'_>,
     chart: &Chart<'_>,
     at: &Boundary,
+    sides: &[[Side; 3]],
     found: &mut FaceFindings,
     log: &mut Log<'_>,
 ) {
@@ -25,13 +38,8 @@ pub(crate) fn prove(
     if !context.options.proven || !bounds.is_bounded() {
         return;
     }
-    let mut sides = vec![[Side::Inner; 3]; chart.mesh.triangles.len()];
-    let mut chords = 0.0f64;
-    for chord in &at.chords {
-        sides[chord.half.triangle as usize][chord.half.side as usize] = Side::Chord(chord.sag);
-        chords = chords.max(chord.sag);
-    }
-    let facets = facets_error(context, chart, &bounds, &sides, log.index);
+    let chords = at.chords.iter().fold(0.0f64, |m, chord| m.max(chord.sag));
+    let facets = facets_error(context, chart, &bounds, sides, log.index);
     let slivers = slivers_error(chart, &bounds, at, facets.error);
     // At poles the mesher goes by other parameters than it writes: claims cannot be compared there.
     found.claimable = facets.plain.max(chords);

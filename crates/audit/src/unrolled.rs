@@ -64,13 +64,17 @@ fn middle_of(context: &Context<'_>, (edge, chord): (u32, u32)) -> Option<DVec3> 
 /// The ends of a half-edge in the chart; one at a pole is moved along the pole to the parameter line of the
 /// other.
 pub(crate) fn beside_poles(chart: &Chart<'_>, half: &Half) -> [DVec2; 2] {
-    let [mut a, mut b] = [half.a, half.b].map(|c| chart.mesh.corners[c as usize].uv);
-    match (chart.pole_axis(half.a), chart.pole_axis(half.b)) {
-        (Some(axis), None) => a[1 - axis] = b[1 - axis],
-        (None, Some(axis)) => b[1 - axis] = a[1 - axis],
-        _ => {}
+    let ends = [half.a, half.b];
+    let mut uv = ends.map(|c| chart.mesh.corners[c as usize].uv);
+    let poles = ends.map(|c| chart.at_pole(c));
+    for i in 0..2 {
+        let Some(pole) = poles[i] else { continue };
+        uv[i][pole.axis] = pole.value;
+        if poles[1 - i].is_none() {
+            uv[i][1 - pole.axis] = uv[1 - i][1 - pole.axis];
+        }
     }
-    [a, b]
+    uv
 }
 
 /// True for the two sides of a cut that are the same moved by whole periods, but for an end at a pole, which
