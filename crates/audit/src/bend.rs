@@ -12,7 +12,7 @@
 //! derivatives at knots inside. This shares no code with the bounds of `nurbs`, whose enclosures are tighter:
 //! it is to check them.
 
-use chordal_nurbs::{Curve, DVec2, DVec3, NurbsCurve3, NurbsSurface, Surface, UvBox};
+use chordal_nurbs::{Curve, DVec2, DVec3, NurbsCurve3, NurbsSurface, Surface, UvBox, math};
 
 /// The largest norms of second derivatives, and jumps of first ones, over a box of parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,7 +39,7 @@ impl Bend {
             Surface::Plane { .. } => bend(0.0, 0.0, 0.0),
             Surface::Cylinder { radius, .. } => bend(radius.abs(), 0.0, 0.0),
             Surface::Cone { radius, half_angle, .. } => {
-                let slope = half_angle.tan();
+                let slope = math::tan(*half_angle);
                 let at = |v: f64| (radius + v * slope).abs();
                 bend(at(within.min.y).max(at(within.max.y)), slope.abs(), 0.0)
             }
@@ -75,7 +75,7 @@ fn largest_cosine(within: UvBox) -> f64 {
     if within.min.y <= 0.0 && within.max.y >= 0.0 {
         return 1.0;
     }
-    within.min.y.cos().abs().max(within.max.y.cos().abs())
+    math::cos(within.min.y).abs().max(math::cos(within.max.y).abs())
 }
 
 /// The largest norms of a curve's derivatives, and the largest jump of the first one.

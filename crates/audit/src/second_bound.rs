@@ -20,7 +20,7 @@
 //! between chord and curve, which have a bound of their own.
 //!
 //! Proven is that the surface over the facet's parameters is as near to the mesh as is claimed, to within
-//! [`SLACK`]; not the way back, nor what lies between the chord of an edge and its curve. A surface without a
+//! [`SLACK`] and to a quarter of the tolerance; not the way back, nor what lies between the chord of an edge and its curve. A surface without a
 //! simple bound, and a facet that takes too many pieces, is looked at in points only, which can refute a bound
 //! and not confirm it.
 
@@ -38,7 +38,7 @@ use rayon::prelude::*;
 const STRIDE: usize = 64;
 
 /// Pieces into which the surface over a facet is divided at most.
-const MOST_PIECES: usize = 512;
+const MOST_PIECES: usize = 256;
 
 /// So many divisions share one bound of second derivatives. Over smaller pieces it is smaller, and takes as
 /// long as some points.
@@ -50,6 +50,10 @@ const LEVELS_WITHOUT_BOUND: u32 = 2;
 /// The bound may exceed the error by this share: at the places that are farthest off no division would show
 /// less.
 const SLACK: f64 = 1.0 / 16.0;
+
+/// Errors below this share of the tolerance need not be confirmed: the facet is within it, and that it is
+/// nearer still is looked at in points.
+const ENOUGH: f64 = 0.25;
 
 /// Measured distances may exceed the error by this share of the tolerance: rounding on surfaces that are
 /// evaluated from large numbers, and far below what a wrong bound is wrong by.
@@ -72,7 +76,8 @@ pub(crate) fn check_second_bound(
         return;
     }
     let limit = error + (NEGLIGIBLE * context.options.tolerance).max(4.0 * chart.rounding);
-    let second = SecondBound { chart, sides, limit };
+    let enough = limit.max(ENOUGH * context.options.tolerance) * (1.0 + SLACK);
+    let second = SecondBound { chart, sides, limit, enough };
     if let Some(measured) = second.refuted(&picked(chart)) {
         log.add(AuditIssue::BoundExceeded { proven: context.mm(limit), measured: context.mm(measured) });
     }
@@ -102,7 +107,10 @@ enum Verdict {
 struct SecondBound<'a, 'b> {
     chart: &'a Chart<'b>,
     sides: &'a [[Side; 3]],
+    /// No point may be farther off.
     limit: f64,
+    /// What is to be confirmed.
+    enough: f64,
 }
 
 impl SecondBound<'_, '_> {
@@ -202,8 +210,9 @@ struct Search<'a, 'b, 'c> {
 impl Search<'_, '_, '_> {
     /// True where the piece is known to be within the limit, and its slack, of the target.
     fn is_within(&mut self, whole: &Piece) -> bool {
-        let mut open = vec![*whole];
+        let mut open = Vec::new();
         let mut within = true;
+        self.divide(whole, &mut open);
         while let Some(piece) = open.pop() {
             self.pieces += 1;
             if self.is_near(&piece) {
@@ -216,14 +225,14 @@ impl Search<'_, '_, '_> {
             }
             self.divide(&piece, &mut open);
         }
-        within
+        within && self.beyond.is_empty()
     }
 
     fn is_near(&self, piece: &Piece) -> bool {
         let Some(bend) = piece.bend else { return false };
         let bend = bend.over(UvBox::from_points(piece.uv).size());
-        let limit = self.second.limit * (1.0 + SLACK);
-        bend <= limit && self.target.farthest(piece.xyz) + bend <= limit
+        let enough = self.second.enough;
+        bend <= enough && self.target.farthest(piece.xyz) + bend <= enough
     }
 
     fn divide(&mut self, piece: &Piece, open: &mut Vec<Piece>) {

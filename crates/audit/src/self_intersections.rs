@@ -27,6 +27,9 @@ use chordal_nurbs::{Box3, BoxTree, Surface};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
+/// Pairs of facets of which all boxes are compared: to put fewer in order takes longer.
+const MOST_DIRECT: usize = 4096;
+
 /// Facets of each of two faces that are compared in order: of more, trees find pairs more quickly.
 const MOST_IN_ORDER: usize = 1024;
 
@@ -200,6 +203,12 @@ fn pairs_between(a: &FacetsOfFace, b: &FacetsOfFace, visit: &mut impl FnMut(u32,
     if of_a.len().min(of_b.len()) > MOST_IN_ORDER {
         let tree = |all: &[(Box3, u32)]| BoxTree::new(all.iter().map(|item| item.0));
         tree(&of_a).pairs_with(&tree(&of_b), &mut |i, j| visit(of_a[i as usize].1, of_b[j as usize].1));
+        return;
+    }
+    if of_a.len() * of_b.len() <= MOST_DIRECT {
+        for (one, i) in &of_a {
+            of_b.iter().filter(|item| item.0.meets(one)).for_each(|item| visit(*i, item.1));
+        }
         return;
     }
     let axis = (common.max - common.min).max_position();

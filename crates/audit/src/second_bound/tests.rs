@@ -1,7 +1,7 @@
 use super::*;
 use crate::halves::Halves;
 use chordal_mesh::{Corner, FaceMesh};
-use chordal_nurbs::{Curve, Facet, Frame, NurbsSurface, SurfaceBounds, facet_bound};
+use chordal_nurbs::{Curve, Facet, Frame, NurbsSurface, SurfaceBounds, facet_bound, math};
 
 /// A grid of two triangles per cell over a box of parameters.
 fn grid(surface: &Surface, within: UvBox, cells: u32) -> FaceMesh {
@@ -64,7 +64,7 @@ fn surfaces() -> Vec<(&'static str, Surface, UvBox)> {
     let square = UvBox::new(DVec2::ZERO, DVec2::ONE);
     let angles = UvBox::new(DVec2::new(0.2, 0.1), DVec2::new(1.4, 1.2));
     let frame = Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X);
-    let wave = |i: usize, j: usize| 0.1 * (1.3 * i as f64).sin() * (0.9 * j as f64).cos();
+    let wave = |i: usize, j: usize| 0.1 * math::sin(1.3 * i as f64) * math::cos(0.9 * j as f64);
     let circle = Curve::Circle { frame, radius: 0.7 };
     let profile =
         Curve::Circle { frame: Frame::new(DVec3::new(1.0, 0.0, 0.0), -DVec3::Y, DVec3::X), radius: 0.3 };
@@ -88,7 +88,7 @@ fn outcome(chart: &Chart<'_>, limit: f64) -> (usize, bool) {
     for half in Halves::of(&chart.mesh.triangles, chart.mesh.corners.len()).single {
         sides[half.triangle as usize][half.side as usize] = Side::Chord(0.0);
     }
-    let second = SecondBound { chart, sides: &sides, limit };
+    let second = SecondBound { chart, sides: &sides, limit, enough: limit * (1.0 + SLACK) };
     let confirmed = all.iter().filter(|&&t| second.judge(t, true) == Verdict::Confirmed).count();
     (confirmed, second.refuted(&all).is_some())
 }
