@@ -21,6 +21,8 @@ pub(crate) struct Bend {
     pub uv: f64,
     pub vv: f64,
     pub jumps: DVec2,
+    /// Over a smaller box it is smaller: here several spans share it.
+    pub is_coarse: bool,
 }
 
 impl Bend {
@@ -34,7 +36,7 @@ impl Bend {
 
     /// That of a surface within a box of its own parameters; `None` where there is no simple bound.
     pub fn of(surface: &Surface, within: UvBox) -> Option<Self> {
-        let bend = |uu: f64, uv: f64, vv: f64| Some(Self { uu, uv, vv, jumps: DVec2::ZERO });
+        let bend = |uu: f64, uv: f64, vv: f64| Some(Self { uu, uv, vv, ..Self::default() });
         match surface {
             Surface::Plane { .. } => bend(0.0, 0.0, 0.0),
             Surface::Cylinder { radius, .. } => bend(radius.abs(), 0.0, 0.0),
@@ -62,7 +64,7 @@ impl Bend {
                 // The profile leaves its start no faster than its first derivative says.
                 let radius = radius + profile.first * (within.max.y - within.min.y);
                 let jumps = DVec2::new(0.0, profile.jump);
-                Some(Self { uu: radius, uv: profile.first, vv: profile.second, jumps })
+                Some(Self { uu: radius, uv: profile.first, vv: profile.second, jumps, is_coarse: false })
             }
             Surface::Nurbs(nurbs) => Some(Net::of_surface(nurbs, within)?.derivatives().bend),
             _ => None,
@@ -238,8 +240,9 @@ impl<'a> Net<'a> {
         let twice =
             |d: Weighted, of: Weighted, s: f64| (d.point.x + 2.0 * of.weight * s + d.weight * reach) / w;
         let jumps = DVec2::new(first(self.jump(&by_u, 0)), first(self.jump(&by_v, 1)));
+        let is_coarse = (0..2).any(|axis| self.grid.count[axis] > self.degree[axis] + 1);
         let uv = (by_uv.point.x + u.weight * s_v + v.weight * s_u + by_uv.weight * reach) / w;
-        let bend = Bend { uu: twice(by_uu, u, s_u), uv, vv: twice(by_vv, v, s_v), jumps };
+        let bend = Bend { uu: twice(by_uu, u, s_u), uv, vv: twice(by_vv, v, s_v), jumps, is_coarse };
         Derivatives { first: DVec2::new(s_u, s_v), bend }
     }
 

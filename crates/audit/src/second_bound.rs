@@ -1,7 +1,7 @@
 //! A second bound of facets, which shares no code with the first: the one that mesher and audit have in common
 //! may be wrong, and a fault in it would pass both.
 //!
-//! A share of the facets of each face, and its largest facet, are bounded again. The surface over a facet is
+//! A share of the facets of each face, and the largest facet of each fourth face, are bounded again. The surface over a facet is
 //! divided until each piece is shown to lie within the error that is claimed for the face:
 //!
 //! 1. the distance from a convex set is a convex function, so that over the plane piece through the images of
@@ -37,8 +37,14 @@ use rayon::prelude::*;
 /// One facet of so many is bounded again.
 const STRIDE: usize = 64;
 
+/// The largest facet of one face of so many is bounded again; of the others it is looked at in points.
+const LARGEST_OF: usize = 4;
+
 /// Pieces into which the surface over a facet is divided at most.
-const MOST_PIECES: usize = 256;
+const MOST_PIECES: usize = 512;
+
+/// Points beyond the limit after which no more are looked for.
+const MOST_BEYOND: usize = 32;
 
 /// So many divisions share one bound of second derivatives. Over smaller pieces it is smaller, and takes as
 /// long as some points.
@@ -49,7 +55,7 @@ const LEVELS_WITHOUT_BOUND: u32 = 2;
 
 /// The bound may exceed the error by this share: at the places that are farthest off no division would show
 /// less.
-const SLACK: f64 = 1.0 / 16.0;
+const SLACK: f64 = 0.125;
 
 /// Errors below this share of the tolerance need not be confirmed: the facet is within it, and that it is
 /// nearer still is looked at in points.
@@ -78,13 +84,20 @@ pub(crate) fn check_second_bound(
     let limit = error + (NEGLIGIBLE * context.options.tolerance).max(4.0 * chart.rounding);
     let enough = limit.max(ENOUGH * context.options.tolerance) * (1.0 + SLACK);
     let second = SecondBound { chart, sides, limit, enough };
-    if let Some(measured) = second.refuted(&picked(chart)) {
+    if let Some(measured) = second.refuted(&picked(chart, log.index.is_multiple_of(LARGEST_OF))) {
         log.add(AuditIssue::BoundExceeded { proven: context.mm(limit), measured: context.mm(measured) });
     }
 }
 
-/// One facet of each few, and the one with the largest area.
-fn picked(chart: &Chart<'_>) -> Vec<usize> {
+/// A facet to be bounded, or, cheaper, to be looked at in points only.
+#[derive(Clone, Copy, Debug)]
+struct Pick {
+    triangle: usize,
+    is_bounded: bool,
+}
+
+/// One facet of each few, to be bounded, and the one with the largest area.
+fn picked(chart: &Chart<'_>, is_largest_bounded: bool) -> Vec<Pick> {
     let area = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|c| chart.xyz[c as usize]);
         (b - a).cross(c - a).length_squared()
@@ -92,16 +105,18 @@ fn picked(chart: &Chart<'_>) -> Vec<usize> {
     let all = chart.mesh.triangles.iter().map(area).enumerate();
     let largest = all.reduce(|best, next| if next.1 > best.1 { next } else { best });
     let share = (STRIDE / 2..chart.mesh.triangles.len()).step_by(STRIDE);
-    share.filter(|&t| Some(t) != largest.map(|l| l.0)).chain(largest.map(|l| l.0)).collect()
+    let share = share.map(|triangle| Pick { triangle, is_bounded: true });
+    let largest = largest.map(|(triangle, _)| Pick { triangle, is_bounded: is_largest_bounded });
+    share.chain(largest).collect()
 }
 
 /// What is known of one facet.
-#[derive(Clone, Debug, PartialEq)]
-enum Verdict {
-    /// It is within the limit.
-    Confirmed,
-    /// It is not known to be; points of the surface that are farther from the facet, with their distances.
-    Open(Vec<(DVec3, f64)>),
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Verdict {
+    /// It is within what is to be confirmed.
+    is_confirmed: bool,
+    /// Points of the surface that are farther from it than the limit, with their distances.
+    beyond: Vec<(DVec3, f64)>,
 }
 
 struct SecondBound<'a, 'b> {
@@ -115,17 +130,10 @@ struct SecondBound<'a, 'b> {
 
 impl SecondBound<'_, '_> {
     /// The largest distance of a point from the mesh of the face, where it is beyond the limit.
-    fn refuted(&self, picked: &[usize]) -> Option<f64> {
-        let judge = |(i, &t): (usize, &usize)| self.judge(t, i < MOST_SEARCHES);
-        let open: Vec<(DVec3, f64)> = picked
-            .par_iter()
-            .enumerate()
-            .with_min_len(16)
-            .flat_map_iter(|pick| match judge(pick) {
-                Verdict::Confirmed => Vec::new(),
-                Verdict::Open(points) => points,
-            })
-            .collect();
+    fn refuted(&self, picked: &[Pick]) -> Option<f64> {
+        let judge = |(i, pick): (usize, &Pick)| self.judge(*pick, i < MOST_SEARCHES);
+        let open: Vec<(DVec3, f64)> =
+            picked.par_iter().enumerate().with_min_len(16).flat_map_iter(|pick| judge(pick).beyond).collect();
         if open.is_empty() {
             return None;
         }
@@ -137,31 +145,30 @@ impl SecondBound<'_, '_> {
         (farthest > self.limit).then_some(farthest)
     }
 
-    fn judge(&self, triangle: usize, with_neighbours: bool) -> Verdict {
+    fn judge(&self, Pick { triangle, is_bounded }: Pick, with_neighbours: bool) -> Verdict {
         let t = &self.chart.mesh.triangles[triangle];
         // The sectors at poles are bounded by other parameters than their corners'.
         if t.iter().any(|&c| self.chart.pole_axis(c).is_some()) {
-            return Verdict::Confirmed;
+            return Verdict::default();
         }
         let uv = t.map(|c| self.chart.mesh.corners[c as usize].uv);
         let xyz = t.map(|c| self.chart.xyz[c as usize]);
-        let Some(target) = Target::new(xyz, self.sides[triangle]) else { return Verdict::Open(Vec::new()) };
-        let bend = self.bend(uv);
-        let whole = Piece { uv, xyz, bend, level: 0 };
+        let Some(target) = Target::new(xyz, self.sides[triangle]) else { return Verdict::default() };
+        let bend = if is_bounded { self.bend(uv) } else { None };
+        let whole = Piece { uv, xyz, off: [0.0; 3], bend, level: 0 };
         let mut search = Search { second: self, target, beyond: Vec::new(), pieces: 0 };
-        if search.is_within(&whole) {
-            return Verdict::Confirmed;
-        }
+        let mut is_confirmed = search.is_within(&whole);
         if with_neighbours && !search.beyond.is_empty() {
             let neighbours = std::array::from_fn(|i| self.neighbour(triangle, i));
-            search = Search { target: Target { neighbours, ..search.target }, ..search };
-            search.beyond.clear();
-            search.pieces = 0;
-            if search.is_within(&whole) {
-                return Verdict::Confirmed;
-            }
+            let target = Target { neighbours, ..search.target };
+            search = Search { second: self, target, beyond: Vec::new(), pieces: 0 };
+            is_confirmed = search.is_within(&whole);
         }
-        Verdict::Open(search.beyond)
+        // Points that are off by no more than the slack refute nothing.
+        if is_confirmed && self.limit * (1.0 + SLACK) >= self.enough {
+            search.beyond.clear();
+        }
+        Verdict { is_confirmed, beyond: search.beyond }
     }
 
     /// That of the surface over a triangle; `None` across the seam of its own parameters.
@@ -193,6 +200,8 @@ impl SecondBound<'_, '_> {
 struct Piece {
     uv: [DVec2; 3],
     xyz: [DVec3; 3],
+    /// Their distances from the target, at most.
+    off: [f64; 3],
     /// That of the surface over it.
     bend: Option<Bend>,
     level: u32,
@@ -219,43 +228,46 @@ impl Search<'_, '_, '_> {
                 continue;
             }
             let most = if piece.bend.is_some() { u32::MAX } else { LEVELS_WITHOUT_BOUND };
-            if self.pieces + open.len() >= MOST_PIECES || piece.level >= most || self.beyond.len() > 8 {
+            if self.pieces + open.len() >= MOST_PIECES
+                || piece.level >= most
+                || self.beyond.len() > MOST_BEYOND
+            {
                 within = false;
                 continue;
             }
             self.divide(&piece, &mut open);
         }
-        within && self.beyond.is_empty()
+        within
     }
 
     fn is_near(&self, piece: &Piece) -> bool {
         let Some(bend) = piece.bend else { return false };
         let bend = bend.over(UvBox::from_points(piece.uv).size());
         let enough = self.second.enough;
-        bend <= enough && self.target.farthest(piece.xyz) + bend <= enough
+        let own = piece.off.iter().copied().fold(0.0, f64::max);
+        bend <= enough && (own + bend <= enough || self.target.farthest(piece.xyz) + bend <= enough)
     }
 
     fn divide(&mut self, piece: &Piece, open: &mut Vec<Piece>) {
         let chart = self.second.chart;
         let uv: [DVec2; 3] = std::array::from_fn(|i| piece.uv[(i + 1) % 3].midpoint(piece.uv[(i + 2) % 3]));
         let xyz = uv.map(|p| chart.point(p));
-        for p in xyz {
-            let distance = self.target.farthest([p; 3]);
-            if distance > self.second.limit {
-                self.beyond.push((p, distance));
-            }
-        }
+        let off = xyz.map(|p| self.target.farthest([p; 3]));
+        let all = xyz.into_iter().zip(off);
+        self.beyond.extend(all.filter(|&(_, distance)| distance > self.second.limit));
         let level = piece.level + 1;
-        let child = |uv: [DVec2; 3], xyz| {
-            let again = level.is_multiple_of(LEVELS_OF_ONE_BEND) && piece.bend.is_some();
+        let is_coarse = piece.bend.is_some_and(|bend| bend.is_coarse);
+        let child = |uv: [DVec2; 3], xyz, off| {
+            let again = is_coarse && level.is_multiple_of(LEVELS_OF_ONE_BEND);
             let bend = if again { self.second.bend(uv) } else { piece.bend };
-            Piece { uv, xyz, bend, level }
+            Piece { uv, xyz, off, bend, level }
         };
         open.extend((0..3).map(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            child([piece.uv[i], uv[k], uv[j]], [piece.xyz[i], xyz[k], xyz[j]])
+            let off = [piece.off[i], off[k], off[j]];
+            child([piece.uv[i], uv[k], uv[j]], [piece.xyz[i], xyz[k], xyz[j]], off)
         }));
-        open.push(child(uv, xyz));
+        open.push(child(uv, xyz, off));
     }
 }
 
@@ -283,7 +295,13 @@ impl Target {
 
     /// How far the plane piece between three points is from the mesh, at most.
     fn farthest(&self, points: [DVec3; 3]) -> f64 {
-        let own = points.iter().map(|&p| self.nearest(p, self.ends).1).fold(0.0, f64::max);
+        let [p, q, r] = points;
+        let first = self.nearest(p, self.ends).1;
+        let own = if p == q && q == r {
+            first
+        } else {
+            first.max(self.nearest(q, self.ends).1).max(self.nearest(r, self.ends).1)
+        };
         let across = (0..3).filter_map(|i| self.farthest_across(points, i));
         across.fold(own, f64::min)
     }

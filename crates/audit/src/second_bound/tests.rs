@@ -83,13 +83,14 @@ fn surfaces() -> Vec<(&'static str, Surface, UvBox)> {
 /// What the second bound says of all facets of a mesh against a limit: how many it confirms, and whether it
 /// refutes the limit.
 fn outcome(chart: &Chart<'_>, limit: f64) -> (usize, bool) {
-    let all: Vec<usize> = (0..chart.mesh.triangles.len()).collect();
+    let all: Vec<Pick> =
+        (0..chart.mesh.triangles.len()).map(|triangle| Pick { triangle, is_bounded: true }).collect();
     let mut sides = vec![[Side::Inner; 3]; all.len()];
     for half in Halves::of(&chart.mesh.triangles, chart.mesh.corners.len()).single {
         sides[half.triangle as usize][half.side as usize] = Side::Chord(0.0);
     }
     let second = SecondBound { chart, sides: &sides, limit, enough: limit * (1.0 + SLACK) };
-    let confirmed = all.iter().filter(|&&t| second.judge(t, true) == Verdict::Confirmed).count();
+    let confirmed = all.iter().filter(|&&pick| second.judge(pick, true).is_confirmed).count();
     (confirmed, second.refuted(&all).is_some())
 }
 
