@@ -26,7 +26,7 @@ def empty(path: Path) -> None:
     save(path, "")
 
 
-@bad_case("not_step", "not a STEP file at all", exit="2", phrase="ISO-10303-21")
+@bad_case("not_step", "not a STEP file at all", exit="2", phrase="triangle mesh (STL)")
 def not_step(path: Path) -> None:
     save(path, "solid cube\n  facet normal 0 0 1\n    outer loop\n      vertex 0 0 0\n" * 3)
 
