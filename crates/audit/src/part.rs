@@ -5,7 +5,7 @@ use crate::edges::{EdgePrecision, audit_edges};
 use crate::face::audit_face;
 use crate::findings::FaceFindings;
 use crate::precision::ROUNDING;
-use crate::report::{AuditOptions, Claim, PartAudit, Problem, Subject};
+use crate::report::{AuditOptions, Claim, FaceCrossing, PartAudit, Problem, Subject};
 use crate::self_intersections::self_intersections;
 use crate::shell::audit_shell;
 use chordal_brep::issue::MeshDefect;
@@ -208,12 +208,19 @@ fn add_self_intersections(context: &Context<'_>, audit: &mut PartAudit) {
     for shell in closed.collect::<Vec<_>>() {
         let of_model = &context.part.shells[shell as usize];
         let found = self_intersections(context.part, context.mesh, &of_model.faces);
+        let sources = |crossing: &FaceCrossing| crossing.faces.map(|f| context.part.faces[f as usize].source);
+        if let Some(first) = found.iter().find(|crossing| !crossing.is_complete) {
+            let face_pairs = found.iter().filter(|crossing| !crossing.is_complete).count();
+            let issue = AuditIssue::TooManyFacetsMeet { face_pairs, faces: sources(first) };
+            audit.problems.push(Problem::new(Subject::Shell(shell), of_model.source, issue));
+        }
+        let found: Vec<FaceCrossing> = found.into_iter().filter(|c| c.facet_pairs > 0).collect();
         let Some(most) = found.iter().rev().max_by_key(|crossing| crossing.facet_pairs) else { continue };
         let issue = AuditIssue::SelfIntersections {
             triangle_pairs: found.iter().map(|crossing| crossing.facet_pairs).sum(),
             face_pairs: found.len(),
             in_file: found.iter().filter(|crossing| crossing.in_file).count(),
-            faces: most.faces.map(|f| context.part.faces[f as usize].source),
+            faces: sources(most),
         };
         audit.problems.push(Problem::new(Subject::Shell(shell), of_model.source, issue));
         audit.self_intersections.extend(found);

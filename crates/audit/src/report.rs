@@ -161,6 +161,8 @@ pub struct FaceCrossing {
     pub faces: [u32; 2],
     /// Pairs of facets that cut each other.
     pub facet_pairs: usize,
+    /// All facets of the two faces were compared; else they lie so close that this would take too long.
+    pub is_complete: bool,
     /// The faces themselves cut each other in the file, or their edges are further off them than they are off
     /// each other: no finer mesh would part them.
     pub in_file: bool,

@@ -37,6 +37,12 @@ const MOST_IN_ORDER: usize = 1024;
 /// inversions for every edge of both.
 const MOST_PLACES: usize = 16;
 
+/// Comparisons of facets in one shell: about a second, and far more than any sound solid needs. Where facets
+/// lie on each other by the thousand, as in a face that runs over itself, more would take minutes. Each pair
+/// of faces has an equal share, and at least [`LEAST_TESTS`], so that no order decides what is found.
+const MOST_TESTS: usize = 4_000_000;
+const LEAST_TESTS: usize = 2_000;
+
 /// The facets of one face of a shell.
 struct FacetsOfFace {
     face: u32,
@@ -49,6 +55,8 @@ struct FacetsOfFace {
 struct Crossing<'f> {
     faces: [&'f FacetsOfFace; 2],
     facets: Vec<[u32; 2]>,
+    /// All facets that may cut each other were compared.
+    is_complete: bool,
 }
 
 /// The pairs of faces of a shell whose facets cut each other, in the order of the faces.
@@ -58,6 +66,7 @@ pub(crate) fn self_intersections(part: &Part, mesh: &PartMesh, faces: &[FaceId])
         faces: crossing.faces.map(|f| f.face),
         facet_pairs: crossing.facets.len(),
         in_file: crossing.in_file(part, mesh) != InFile::Apart,
+        is_complete: crossing.is_complete,
     };
     crossings(part, mesh, &all).par_iter().map(describe).collect()
 }
@@ -88,12 +97,20 @@ fn crossings<'f>(part: &Part, mesh: &PartMesh, all: &'f [FacetsOfFace]) -> Vec<C
     pairs.extend(
         (0..all.len()).filter(|&i| may_meet_itself(part, mesh, all[i].face)).map(|i| (i as u32, i as u32)),
     );
+    let most = (MOST_TESTS / pairs.len().max(1)).max(LEAST_TESTS);
     let cuts = |&(i, j): &(u32, u32)| {
         let (a, b) = (&all[i as usize], &all[j as usize]);
         let (a, b) = if a.face <= b.face { (a, b) } else { (b, a) };
-        let mut facets = if i == j { a.cuts_of_its_own() } else { a.cuts_with(b) };
+        let mut cuts = Cuts { facets: Vec::new(), left: most };
+        if i == j {
+            a.cuts_of_its_own(&mut cuts)
+        } else {
+            a.cuts_with(b, &mut cuts)
+        }
+        let Cuts { mut facets, left } = cuts;
         facets.sort_unstable();
-        (!facets.is_empty()).then_some(Crossing { faces: [a, b], facets })
+        let is_complete = left > 0;
+        (!facets.is_empty() || !is_complete).then_some(Crossing { faces: [a, b], facets, is_complete })
     };
     let mut found: Vec<Crossing<'f>> = pairs.par_iter().filter_map(cuts).collect();
     found.sort_unstable_by_key(|crossing| crossing.faces.map(|f| f.face));
@@ -144,10 +161,27 @@ impl Crossing<'_> {
     /// What the file says about the two faces, by places spread over all their cuts.
     fn in_file(&self, part: &Part, mesh: &PartMesh) -> InFile {
         let faces = self.faces.map(|f| f.face as usize);
-        let cuts = self.pairs().zip(&self.facets).step_by(self.facets.len().div_ceil(MOST_PLACES));
+        let cuts = self.pairs().zip(&self.facets).step_by(self.facets.len().div_ceil(MOST_PLACES).max(1));
         let found =
             cuts.map(|([s, t], &facets)| in_file(part, mesh, faces, facets, cut_points(s, t).center()));
         found.max().unwrap_or(InFile::Apart)
+    }
+}
+
+/// The pairs of facets that cut each other, found as long as comparisons are left.
+struct Cuts {
+    facets: Vec<[u32; 2]>,
+    left: usize,
+}
+
+impl Cuts {
+    fn compare(&mut self, pair: [u32; 2], s: &Facet3, t: &Facet3) {
+        if self.left > 0 {
+            self.left -= 1;
+            if cut_each_other(s, t) {
+                self.facets.push(pair);
+            }
+        }
     }
 }
 
@@ -173,24 +207,16 @@ impl FacetsOfFace {
         all.filter(|(bounds, _)| bounds.meets(region)).collect()
     }
 
-    fn cuts_with(&self, other: &Self) -> Vec<[u32; 2]> {
-        let mut cuts = Vec::new();
+    fn cuts_with(&self, other: &Self, cuts: &mut Cuts) {
         pairs_between(self, other, &mut |i, j| {
-            if cut_each_other(&self.facets[i as usize], &other.facets[j as usize]) {
-                cuts.push([i, j]);
-            }
+            cuts.compare([i, j], &self.facets[i as usize], &other.facets[j as usize]);
         });
-        cuts
     }
 
-    fn cuts_of_its_own(&self) -> Vec<[u32; 2]> {
-        let mut cuts = Vec::new();
+    fn cuts_of_its_own(&self, cuts: &mut Cuts) {
         self.tree().own_pairs(&mut |i, j| {
-            if cut_each_other(&self.facets[i as usize], &self.facets[j as usize]) {
-                cuts.push([i, j]);
-            }
+            cuts.compare([i, j], &self.facets[i as usize], &self.facets[j as usize]);
         });
-        cuts
     }
 }
 

@@ -15,7 +15,7 @@
 use crate::keys::Segment;
 use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
-use chordal_nurbs::{DVec2, DVec3, orient};
+use chordal_nurbs::{DVec2, DVec3, orient, work};
 
 /// The largest bulge of a curve, as a multiple of the bulge at its middle.
 const BULGE_MARGIN: f64 = 2.0;
@@ -31,6 +31,9 @@ const MOST_PAIRS: usize = 20_000;
 
 /// The clock is read once for this many sides.
 const SIDES_PER_LOOK: usize = 64;
+
+/// The work of a pair of sides.
+const PAIR: u64 = 4;
 
 /// One segment of a loop.
 struct Side {
@@ -183,6 +186,7 @@ fn crossing_pairs(sides: &[Side], is_out_of_time: &dyn Fn() -> bool) -> Vec<(usi
         }
         let (low_i, high_i) = (low(i), high(i));
         for &j in order[k + 1..].iter().take_while(|&&j| low(j).x <= high_i.x) {
+            work::count(PAIR);
             if low(j).y <= high_i.y && high(j).y >= low_i.y && cross(sides[i].uv, sides[j].uv) {
                 pairs.push((i, j));
             }

@@ -21,7 +21,7 @@ use crate::seams::Seams;
 use crate::snap::{Grid, settled};
 use crate::trimmed_face::{OpenLoop, TrimmedFace};
 use chordal_brep::MeshIssue;
-use chordal_nurbs::{BoxSide, DVec2, DVec3, UvBox};
+use chordal_nurbs::{BoxSide, DVec2, DVec3, UvBox, work};
 use cuts::{Side, hold_beside};
 use std::collections::BTreeMap;
 use winding::seam_beside;
@@ -179,6 +179,9 @@ impl Unroll<'_, '_> {
         let mut at = 0;
         let mut points = vec![from];
         for k in 1..=count {
+            if work::is_over() {
+                break;
+            }
             let wanted = total * k as f64 / count as f64;
             while at + 1 < probes && sum[at + 1] < wanted {
                 at += 1;
@@ -190,7 +193,7 @@ impl Unroll<'_, '_> {
             self.halve_until_near(points[points.len() - 1], next, SEAM_DEPTH, &mut points);
         }
         points.pop();
-        points.remove(0);
+        points.drain(..1.min(points.len()));
         points
     }
 
@@ -204,7 +207,7 @@ impl Unroll<'_, '_> {
             (x - chord * along).length()
         };
         let allowed = self.seams.tolerance * self.seams.chord * self.seams.chord;
-        if depth > 0 && (1..8).any(|i| off(i) > allowed) {
+        if depth > 0 && !work::is_over() && (1..8).any(|i| off(i) > allowed) {
             let middle = from.midpoint(to);
             self.halve_until_near(from, middle, depth - 1, points);
             self.halve_until_near(middle, to, depth - 1, points);

@@ -13,6 +13,7 @@ use crate::options::MeshOptions;
 use crate::placement::PartUse;
 use crate::report::*;
 use crate::resolve::Resolved;
+use crate::work_limits::Kept;
 use chordal_audit::FaceCrossing;
 use chordal_brep::{Issue, MeshIssue, Model, Part, ResultIssue, Severity, Source};
 use chordal_sew::SewReport;
@@ -24,6 +25,8 @@ pub(crate) struct Findings<'a> {
     pub sewn: &'a [Option<SewReport>],
     pub resolved: &'a Resolved,
     pub parts: &'a [MeshedPart],
+    /// How the limits of the file were kept.
+    pub kept: Kept,
     pub audits: &'a [AuditedPart],
 }
 
@@ -45,9 +48,11 @@ pub(crate) fn account(input: InputReport, options: &MeshOptions, found: &Finding
         options: options_report(options, found.resolved),
         boundary_error: Some(0.0),
         loose: loose(found.model),
+        work: found.kept.work,
         ..Report::default()
     };
     report.problems.extend(found.model.issues.iter().map(Problem::new));
+    report.problems.extend(found.kept.shares.map(|shares| Problem::new(&shares.issue())));
     for (entry, options) in entries(found).iter().zip(&found.resolved.parts) {
         add_part(&mut report, entry, options.tolerance);
         if let Some(sewn) = entry.sewn {
@@ -91,7 +96,7 @@ fn entries<'a>(found: &Findings<'a>) -> Vec<Entry<'a>> {
 }
 
 fn options_report(options: &MeshOptions, resolved: &Resolved) -> OptionsReport {
-    let mesher = options.mesher();
+    let (mesher, limits) = (options.mesher(), options.limits());
     OptionsReport {
         tolerance: resolved.tolerance,
         tolerance_requested: options.tolerance().to_string(),
@@ -102,7 +107,9 @@ fn options_report(options: &MeshOptions, resolved: &Resolved) -> OptionsReport {
         edge_method: options.edge_splitter_name().into(),
         sewing: options.sewing().to_string(),
         bound: bound_name(mesher.bound).into(),
-        face_timeout: mesher.face_timeout.map(|t| t.as_secs_f64()),
+        face_timeout: limits.face_timeout.map(|t| t.as_secs_f64()),
+        file_timeout: limits.file_timeout.map(|t| t.as_secs_f64()),
+        memory: limits.memory,
     }
 }
 

@@ -1,10 +1,10 @@
 //! The same model by several strategies, side by side.
 
 use crate::error::Error;
-use crate::meshed_part::{MeshedPart, mesh_parts};
+use crate::meshed_part::MeshedPart;
 use crate::model::Model;
 use crate::options::MeshOptions;
-use crate::resolve::{Resolved, resolve};
+use crate::resolve::Resolved;
 use chordal_methods::StrategyEntry;
 use chordal_methods::compare::{MeshedUse, bound_name, fewest_triangles};
 use chordal_tessellate::{Bound, Cancel, Stopwatch};
@@ -36,11 +36,10 @@ pub fn compare(
     for strategy in strategies {
         for &bound in bounds {
             let options = options.clone().with_fill_method(strategy.fill_method()).with_bound(bound);
-            let resolved =
-                resolve(model.brep(), &options, cancel).map_err(|error| error.named(model.name()))?;
+            let resolved = crate::stages::resolve(model, &options, cancel)?;
             comparison.tolerance = resolved.tolerance;
             let clock = Stopwatch::of_process();
-            let parts = mesh_parts(model.brep(), &resolved, cancel, &|_| ());
+            let parts = crate::stages::mesh_parts(model, &resolved, cancel);
             let seconds = clock.seconds();
             if cancel.is_cancelled() {
                 return Err(Error::Cancelled);

@@ -3,22 +3,20 @@
 use crate::account::{loose, model_problems};
 use crate::gaps::{Gap, gaps};
 use crate::names::face_kind;
+use crate::options::MeshOptions;
 use crate::placement::{PartUse, part_uses};
 use crate::report::{GapSurvey, LooseEntry, Problem, entity_name};
-use crate::tight_box::{edge_box, tight_box};
+use crate::tight_box::{edge_box, tight_box_within};
+use crate::work_limits::FileLimits;
 use chordal_brep::{BodyKind, Model, NodeId, Part};
 use chordal_sew::{gap_survey, has_topology, open_edges};
 use chordal_tessellate::Cancel;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::time::Duration;
 
 /// The name and version of the schema of [`Info`].
 pub const INFO_SCHEMA: &str = "chordal-info/2";
-
-/// What a face may take while the box is measured.
-const FACE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// What is in a file. Lengths are millimetres; counts of the whole are as placed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -119,7 +117,8 @@ pub struct NodeInfo {
 /// Looks at everything in a model.
 pub(crate) fn info(model: &Model) -> Info {
     let uses = part_uses(model);
-    let whole = tight_box(model, &uses, edge_box(model, &uses), Some(FACE_TIMEOUT), &Cancel::default());
+    let limits = FileLimits::new(MeshOptions::default().limits(), model, &uses, 0, 1.0);
+    let whole = tight_box_within(model, &uses, edge_box(model, &uses), &limits, &Cancel::default());
     let parts: Vec<PartInfo> =
         model.parts.par_iter().zip(&uses).map(|(part, part_use)| part_info(part, part_use)).collect();
     let mut faces_by_kind = BTreeMap::new();

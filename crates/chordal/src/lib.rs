@@ -76,6 +76,7 @@ mod scene;
 mod sewing;
 pub mod stages;
 mod tight_box;
+mod work_limits;
 
 pub use error::{Error, FileError, RequestError};
 #[cfg(feature = "gpu")]
@@ -91,6 +92,7 @@ pub use quantity::{QuantityError, Tolerance, parse_angle, parse_length};
 pub use render::{Evaluated, Image, ImageRenderer, RenderMode};
 pub use report::{Closedness, Problem, REPORT_SCHEMA, Report};
 pub use sewing::Sewing;
+pub use work_limits::WorkLimits;
 
 pub use chordal_audit as audit;
 pub use chordal_brep as brep;

@@ -3,9 +3,10 @@
 use crate::progress::FaceCounter;
 use crate::report::StageEntry;
 use crate::resolve::Resolved;
+use crate::work_limits::Kept;
 use chordal_brep::Model;
 use chordal_mesh::PartMesh;
-use chordal_tessellate::{Cancel, PartReport, tessellate_part};
+use chordal_tessellate::{Cancel, Options, PartReport, tessellate_part};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -35,18 +36,28 @@ impl MeshedPart {
 
 /// Meshes every placed part once, in parallel; `tell` receives the fraction that is done. The result does not depend on the number of threads.
 ///
-/// One per part of the model, in its order; a part that is never placed has an empty mesh.
+/// One per part of the model, in its order; a part that is never placed has an empty mesh. Also what they took.
 pub(crate) fn mesh_parts(
     model: &Model,
     resolved: &Resolved,
     cancel: &Cancel,
     tell: &(dyn Fn(f64) + Sync),
-) -> Vec<MeshedPart> {
+) -> (Vec<MeshedPart>, Kept) {
     let counter = FaceCounter::start(model, resolved, tell);
+    resolved.limits.keep(&resolved.parts, |options| mesh_with(model, resolved, options, cancel, &counter))
+}
+
+fn mesh_with(
+    model: &Model,
+    resolved: &Resolved,
+    options: &[Options],
+    cancel: &Cancel,
+    counter: &FaceCounter<'_>,
+) -> Vec<MeshedPart> {
     model
         .parts
         .par_iter()
-        .zip(&resolved.parts)
+        .zip(options)
         .zip(&resolved.uses)
         .map(|((part, options), part_use)| {
             if part_use.instances == 0 {

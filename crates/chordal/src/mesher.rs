@@ -95,12 +95,13 @@ impl Mesher {
         // 2. Resolve: what the options mean in the units of every part.
         run.tell(Phase::Measuring, 0.0);
         let resolved = ledger
-            .time(|s| &mut s.resolve, || resolve(&exact, &self.options, run.cancel()))
+            .time(|s| &mut s.resolve, || resolve(&exact, &self.options, model.byte_count(), run.cancel()))
             .map_err(|error| error.named(model.name()))?;
         run.check()?;
 
         // 3. Mesh every placed part once: trim, sample edges, size, place, triangulate, prove, stitch.
-        let mut parts = mesh_parts(&exact, &resolved, run.cancel(), &|done| run.tell(Phase::Meshing, done));
+        let (mut parts, kept) =
+            mesh_parts(&exact, &resolved, run.cancel(), &|done| run.tell(Phase::Meshing, done));
         run.check()?;
 
         // 4. Audit: recompute every promise from the model and the meshes.
@@ -115,8 +116,14 @@ impl Mesher {
         run.check()?;
 
         // 5. Account: what was done, what is proven, what went wrong.
-        let found =
-            Findings { model: &exact, sewn: &sewn, resolved: &resolved, parts: &parts, audits: &audits };
+        let found = Findings {
+            model: &exact,
+            sewn: &sewn,
+            resolved: &resolved,
+            parts: &parts,
+            kept,
+            audits: &audits,
+        };
         let mut report = account(input_report(model, resolved.diagonal), &self.options, &found);
         // Faces that have no area need no triangles: that is no failure.
         let needs_none = report.clean && report.faces.zero_area > 0;

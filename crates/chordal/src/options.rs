@@ -2,6 +2,7 @@
 
 use crate::quantity::Tolerance;
 use crate::sewing::Sewing;
+use crate::work_limits::{RequestedLimits, WorkLimits};
 use chordal_tessellate::method::{EdgeSplitter, FillMethod};
 use chordal_tessellate::{Bound, Bulk, Options};
 use chordal_write::Format;
@@ -10,9 +11,6 @@ use std::time::Duration;
 
 /// Angle between neighbouring normals that most users expect of a mesh.
 const ANGLE_DEGREES: f64 = 20.0;
-
-/// A face that takes longer is reported as failed; real faces take milliseconds.
-const FACE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// What the caller requests of a mesh.
 ///
@@ -31,22 +29,22 @@ pub struct MeshOptions {
     sewing: Sewing,
     output_format: Option<Format>,
     self_intersections: bool,
+    limits: RequestedLimits,
     /// Lengths are millimetres; its own tolerances are set for each part.
     mesher: Options,
 }
 
 impl Default for MeshOptions {
-    /// 0.1 % of the diagonal of the model, 20 degrees, 60 seconds a face.
+    /// 0.1 % of the diagonal of the model, 20 degrees, the limits of [`WorkLimits`].
     fn default() -> Self {
-        let mesher = Options::new(0.0)
-            .with_angle(Some(ANGLE_DEGREES.to_radians()))
-            .with_face_timeout(Some(FACE_TIMEOUT));
+        let mesher = Options::new(0.0).with_angle(Some(ANGLE_DEGREES.to_radians()));
         Self {
             tolerance: Tolerance::default(),
             boundary_tolerance: None,
             sewing: Sewing::default(),
             output_format: None,
             self_intersections: true,
+            limits: RequestedLimits::default(),
             mesher,
         }
     }
@@ -83,11 +81,6 @@ mesher_options! {
     with_bulk(bulk: Bulk);
     /// Record the cells of subdivisions, so that they can be drawn.
     with_cells_recorded(record: bool);
-    /// Time after which a face is reported as failed; `None` is no limit. Default: 60 seconds. Platforms without a
-    /// clock ignore it.
-    with_face_timeout(timeout: Option<Duration>);
-    /// Number of triangles after which a face is reported as failed. Default: 20 million.
-    with_face_triangles(triangles: usize);
 }
 
 impl MeshOptions {
@@ -124,6 +117,32 @@ impl MeshOptions {
     pub fn with_output_format(mut self, format: Option<Format>) -> Self {
         self.output_format = format;
         self
+    }
+
+    /// Processor time after which a face or an edge is reported as failed; `None` is no limit. Default: 3 seconds, with
+    /// a fill method or an edge splitter 60. The time is that of an ordinary core ([`WorkLimits`]).
+    pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {
+        self.limits.face_timeout = Some(timeout);
+        self
+    }
+
+    /// Processor time that all faces of a file may take together, per megabyte of the file and at 0.1 %; `None` is no
+    /// limit. Default: the time of one face.
+    pub fn with_file_timeout(mut self, timeout: Option<Duration>) -> Self {
+        self.limits.file_timeout = Some(timeout);
+        self
+    }
+
+    /// Memory in bytes that the triangles of a file may take, per megabyte of the file and at 0.1 %; `None` is no limit.
+    /// Default: a gigabyte.
+    pub fn with_memory(mut self, bytes: Option<u64>) -> Self {
+        self.limits.memory = Some(bytes);
+        self
+    }
+
+    /// What the faces of a file may take, with the defaults for these options filled in.
+    pub fn limits(&self) -> WorkLimits {
+        self.limits.resolved(self.mesher.fill_method.is_some() || self.mesher.edge_splitter.is_some())
     }
 
     /// Largest distance between the mesh and the exact surfaces.
@@ -168,7 +187,8 @@ impl MeshOptions {
 
     /// The options for one part. Tolerances are in the part's units, `scale` leads from these to millimetres.
     pub(crate) fn of_part(&self, tolerance: f64, boundary_tolerance: Option<f64>, scale: f64) -> Options {
-        let mut options = self.mesher.clone().with_boundary_tolerance(boundary_tolerance);
+        let options = self.mesher.clone().with_boundary_tolerance(boundary_tolerance);
+        let mut options = options.with_face_timeout(self.limits().face_timeout);
         options.tolerance = tolerance;
         let max_edge = options.max_edge.map(|length| length / scale);
         options.with_max_edge(max_edge)

@@ -2,10 +2,8 @@
 
 use crate::compare::placed;
 use crate::error::Error;
-use crate::meshed_part::mesh_parts;
 use crate::model::Model;
 use crate::options::MeshOptions;
-use crate::resolve::resolve;
 use chordal_methods::papers::{loop_entries, surface_methods, timed};
 use chordal_tessellate::Cancel;
 use std::path::Path;
@@ -18,8 +16,7 @@ pub use chordal_methods::papers::{LoopEntry, PaperTables, SurfaceEntry};
 /// Where the model cannot be read or the options make no sense for it.
 pub fn paper_tables(input: &Path, options: &MeshOptions, cancel: &Cancel) -> Result<PaperTables, Error> {
     let model = Model::open(input)?;
-    let resolved =
-        |options: &MeshOptions| resolve(model.brep(), options, cancel).map_err(|e| e.named(model.name()));
+    let resolved = |options: &MeshOptions| crate::stages::resolve(&model, options, cancel);
     let of_options = resolved(options)?;
     let parts = model.brep().parts.iter().zip(of_options.uses.iter().zip(&of_options.parts));
     let mut tables = PaperTables {
@@ -36,7 +33,7 @@ pub fn paper_tables(input: &Path, options: &MeshOptions, cancel: &Cancel) -> Res
             .with_edge_splitter(method.edge_splitter())
             .with_bound(method.bound);
         let resolved = resolved(&options)?;
-        let (parts, seconds) = timed(|| mesh_parts(model.brep(), &resolved, cancel, &|_| ()));
+        let (parts, seconds) = timed(|| crate::stages::mesh_parts(&model, &resolved, cancel));
         tables.surfaces.push(SurfaceEntry::of(&method, &placed(&model, &resolved, &parts), seconds));
     }
     Ok(tables)

@@ -83,6 +83,9 @@ pub struct Report {
     pub seconds: Seconds,
     /// Which methods of the mesher ran, in the order of the faces.
     pub stages: Vec<StageEntry>,
+    /// Seconds of an ordinary core that the faces and edges took, by counted work: the same on every machine.
+    #[serde(default)]
+    pub work: f64,
     /// Largest resident memory of the process so far, in bytes; `null` where the system does not tell.
     pub peak_memory: Option<u64>,
     /// Threads that meshed.
@@ -129,8 +132,12 @@ pub struct OptionsReport {
     pub sewing: String,
     /// "proven" or "estimated".
     pub bound: String,
-    /// `null`: no limit.
+    /// Seconds of one face or edge; `null`: no limit.
     pub face_timeout: Option<f64>,
+    /// Seconds of all faces and edges, per megabyte of the file and at 0.1 %; `null`: no limit.
+    pub file_timeout: Option<f64>,
+    /// Bytes of all triangles, per megabyte of the file and at 0.1 %; `null`: no limit.
+    pub memory: Option<u64>,
 }
 
 /// The shells of the model that have a surface, as placed; `total = closed + open_by_design + leaking`.

@@ -4,13 +4,14 @@ use crate::error::{Error, FileError, RequestError};
 use crate::options::MeshOptions;
 use crate::placement::{PartUse, part_uses};
 use crate::quantity::Tolerance;
-use crate::tight_box::{edge_box, tight_box};
+use crate::tight_box::{edge_box, tight_box_within};
+use crate::work_limits::FileLimits;
 use chordal_brep::{Model, Source};
 use chordal_tessellate::{Cancel, Options};
 use chordal_write::Format;
 
-/// Measuring the box of the model may take this part of the time that a face has.
-const BOX_SHARE: u32 = 4;
+/// Measuring the box of the model may take this part of the time of the file and of a face.
+const BOX_SHARE: f64 = 0.25;
 
 /// A tolerance below this many units in the last place of the largest coordinate is refused: evaluating a surface
 /// costs some tens of roundings, so nothing finer can be proven.
@@ -38,6 +39,8 @@ pub struct Resolved {
     pub uses: Vec<PartUse>,
     /// What is asked of every part, in its own units.
     pub parts: Vec<Options>,
+    /// What the faces of the file may take together.
+    pub(crate) limits: FileLimits,
 }
 
 /// Why the options mean nothing for a model.
@@ -61,13 +64,14 @@ impl ResolveError {
     }
 }
 
-/// Resolves `options` for `model`.
+/// Resolves `options` for `model`, which was read from so many bytes; zero where it comes from elsewhere.
 ///
 /// # Errors
 /// Where the tolerance is below what the coordinates can represent, or a coordinate is out of range.
 pub(crate) fn resolve(
     model: &Model,
     options: &MeshOptions,
+    bytes: u64,
     cancel: &Cancel,
 ) -> Result<Resolved, ResolveError> {
     let uses = part_uses(model);
@@ -75,8 +79,8 @@ pub(crate) fn resolve(
     let requested = [Some(options.tolerance()), options.boundary_tolerance()];
     let relative = requested.iter().flatten().any(|t| matches!(t, Tolerance::Percent(_)));
     // A face that takes longer counts by its control points: the box is no reason to spend the face's time twice.
-    let face_timeout = options.mesher().face_timeout.map(|timeout| timeout / BOX_SHARE);
-    let size = if relative { tight_box(model, &uses, edges, face_timeout, cancel) } else { edges };
+    let limits = FileLimits::new(options.limits(), model, &uses, bytes, 1.0).part_of(BOX_SHARE);
+    let size = if relative { tight_box_within(model, &uses, edges, &limits, cancel) } else { edges };
     let diagonal = relative.then(|| size.diagonal());
     let millimetres = |tolerance: Tolerance| match tolerance {
         Tolerance::Millimetres(mm) => mm,
@@ -105,7 +109,9 @@ pub(crate) fn resolve(
             options.of_part(of_parts(tolerance) / part_use.scale, boundary, part_use.scale)
         })
         .collect();
-    Ok(Resolved { tolerance, boundary_tolerance, diagonal, rounding, uses, parts })
+    let fineness = tolerance / size.diagonal();
+    let limits = FileLimits::new(options.limits(), model, &uses, bytes, fineness);
+    Ok(Resolved { tolerance, boundary_tolerance, diagonal, rounding, uses, parts, limits })
 }
 
 /// Names the vertex that lies farthest out.

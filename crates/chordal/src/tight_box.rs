@@ -15,8 +15,9 @@ mod faces;
 mod hull;
 
 use crate::placement::PartUse;
+use crate::work_limits::{FileLimits, WorkLimits};
 use chordal_brep::Model;
-use chordal_tessellate::Cancel;
+use chordal_tessellate::{Bound, Cancel, Options};
 use glam::{DAffine3, DVec3};
 use std::time::Duration;
 
@@ -94,8 +95,8 @@ pub fn edge_box(model: &Model, uses: &[PartUse]) -> TightBox {
     found
 }
 
-/// The tight box of every placed face; starts from [`edge_box`]. A face that takes longer than `face_timeout` counts by
-/// its edges only.
+/// The tight box of every placed face, without a limit of time for all faces together. A face that takes longer than
+/// `face_timeout` counts by its edges only.
 pub fn tight_box(
     model: &Model,
     uses: &[PartUse],
@@ -103,9 +104,26 @@ pub fn tight_box(
     face_timeout: Option<Duration>,
     cancel: &Cancel,
 ) -> TightBox {
-    let mut found = edges;
-    for (part, part_use) in model.parts.iter().zip(uses).filter(|(_, u)| u.instances > 0) {
-        faces::include(&mut found, part, part_use, face_timeout, cancel);
-    }
+    let limits = WorkLimits { face_timeout, file_timeout: None, memory: None };
+    tight_box_within(model, uses, edges, &FileLimits::new(limits, model, uses, 0, 1.0), cancel)
+}
+
+/// The tight box of every placed face; starts from [`edge_box`]. A face that takes more than the limits counts by its
+/// edges only.
+pub(crate) fn tight_box_within(
+    model: &Model,
+    uses: &[PartUse],
+    edges: TightBox,
+    limits: &FileLimits,
+    cancel: &Cancel,
+) -> TightBox {
+    let options = [limits.face_options(Options::new(1.0).with_bound(Bound::Estimated))];
+    let (found, _) = limits.keep(&options, |options| {
+        let mut found = edges;
+        for (part, part_use) in model.parts.iter().zip(uses).filter(|(_, u)| u.instances > 0) {
+            faces::include(&mut found, part, part_use, &options[0], cancel);
+        }
+        found
+    });
     found
 }

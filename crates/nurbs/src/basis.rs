@@ -5,7 +5,7 @@
 //! functions that do not vanish on it are `s-p..=s`. Only non-empty spans are ever evaluated, so no
 //! denominator is zero.
 
-use crate::{NurbsError, Range};
+use crate::{NurbsError, Range, work};
 
 /// The largest degree accepted.
 pub(crate) const MAX_DEGREE: usize = 100;
@@ -59,6 +59,7 @@ pub(crate) fn find_span(degree: usize, knots: &[f64], t: f64) -> usize {
 
 /// Indices of the non-empty spans whose inside meets `within`; none where that is empty.
 pub(crate) fn spans_within(degree: usize, knots: &[f64], within: Range) -> Vec<usize> {
+    work::count(knots.len() as u64);
     (degree..knots.len() - degree - 1)
         .filter(|&s| knots[s] < knots[s + 1] && knots[s] < within.end && knots[s + 1] > within.start)
         .collect()
@@ -109,6 +110,7 @@ impl<const R: usize> Basis<R> {
         let t = t.max(knots[degree]).min(knots[knots.len() - degree - 1]);
         let span = find_span(degree, knots, t);
         let width = degree + 1;
+        work::count((width * width) as u64);
         let mut basis =
             Self { first: span - degree, width, stack: [[0.0; STACK_WIDTH]; R], heap: Vec::new() };
         let window = &knots[span + 1 - degree..=span + degree];
@@ -125,6 +127,7 @@ impl<const R: usize> Basis<R> {
     /// The Bernstein polynomials of this degree at `t`, which is not clamped.
     pub fn bernstein(degree: usize, t: f64) -> Self {
         let width = degree + 1;
+        work::count((width * width) as u64);
         let mut basis = Self { first: 0, width, stack: [[0.0; STACK_WIDTH]; R], heap: Vec::new() };
         if width <= STACK_WIDTH {
             let window: [f64; 2 * STACK_WIDTH] = std::array::from_fn(|i| f64::from(i >= degree));

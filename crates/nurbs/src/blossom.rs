@@ -6,7 +6,7 @@
 //! over `a..b` is `f(a × (p-i), b × i)`. All blends are `x(1-α) + yα`, exact at α = 0 and 1, so shared ends
 //! stay bitwise equal.
 
-use crate::Vector;
+use crate::{Vector, work};
 
 #[inline]
 fn blend<T: Vector>(x: T, y: T, alpha: f64) -> T {
@@ -19,6 +19,7 @@ fn blend<T: Vector>(x: T, y: T, alpha: f64) -> T {
 /// triangle: those above become `b`.
 pub(crate) fn span_to_bezier<T: Vector>(row: &mut [T], knots: &[f64], a: f64, b: f64) {
     let p = row.len() - 1;
+    work::count((2 * row.len() * row.len()) as u64);
     for r in 1..=p {
         for j in 0..=p - r {
             let (low, high) = (knots[j + r - 1], knots[j + p]);
@@ -37,6 +38,7 @@ pub(crate) fn span_to_bezier<T: Vector>(row: &mut [T], knots: &[f64], a: f64, b:
 /// Restricts a Bézier row over 0..=1 to `a..b`; backwards where `a > b`.
 pub(crate) fn restrict<T: Vector>(row: &mut [T], a: f64, b: f64) {
     let p = row.len() - 1;
+    work::count((2 * row.len() * row.len()) as u64);
     let (low, high) = (a.min(b), a.max(b));
     for r in 1..=p {
         for j in 0..=p - r {

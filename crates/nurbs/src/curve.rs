@@ -6,7 +6,7 @@ mod offset;
 mod transform;
 
 use crate::conic::{self, Jet3};
-use crate::{CompositeSegment, Curve, CurveJet, Range};
+use crate::{CompositeSegment, Curve, CurveJet, Range, work};
 pub(crate) use breaks::{ANY, repeat_over, surface_lines, tidy};
 use glam::DVec3;
 pub(crate) use offset::unit_jet;
@@ -17,10 +17,14 @@ pub(crate) use transform::similarity;
 /// Files round coordinates to about nine digits; a slit that is narrower has no meaning to a mesh.
 pub(crate) const CLOSED: f64 = 1e-7;
 
+/// The work of an evaluation beside that of splines, which count their own.
+const EVALUATION: u64 = 20;
+
 impl Curve {
     /// The point at `t`. Closed free-form curves go round; others are evaluated at the nearer end of the
     /// domain or go on beyond it.
     pub fn point(&self, t: f64) -> DVec3 {
+        work::count(EVALUATION);
         match self {
             Curve::Line { origin, direction } => *origin + *direction * t,
             Curve::Nurbs(curve) => curve.point(self.inside(t)),
@@ -47,6 +51,7 @@ impl Curve {
     /// The point at `t` with the first three derivatives; the third one of offset curves and of curves on
     /// surfaces is a central difference.
     pub fn jet3(&self, t: f64) -> Jet3<DVec3> {
+        work::count(EVALUATION);
         match self {
             Curve::Line { origin, direction } => conic::line(*origin, *direction, t),
             Curve::Circle { frame: f, radius } => conic::ellipse(f.origin, f.x * *radius, f.y * *radius, t),

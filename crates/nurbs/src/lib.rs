@@ -66,6 +66,7 @@ mod tensor;
 mod trim;
 mod uv_box;
 mod vector;
+pub mod work;
 
 pub use bezier::BezierCurve;
 pub use bezier_patch::BezierPatch;

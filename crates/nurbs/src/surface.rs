@@ -14,17 +14,21 @@ pub use transform::TransformedSurface;
 use crate::conic::wrapped;
 use crate::curve::CLOSED;
 use crate::math;
-use crate::{Frame, NurbsSurface, Range, Surface, SurfaceJet, SurfaceKind, UvBox};
+use crate::{Frame, NurbsSurface, Range, Surface, SurfaceJet, SurfaceKind, UvBox, work};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Distances to the axis below this part of a torus' minor radius are rounding.
 const ROUNDED: f64 = 1e-14;
 
+/// The work of an evaluation beside that of splines, which count their own.
+const EVALUATION: u64 = 20;
+
 impl Surface {
     /// The point at `p_uv`. Closed free-form surfaces go round; others are evaluated at the domain's border
     /// beyond it.
     pub fn point(&self, p_uv: DVec2) -> DVec3 {
+        work::count(EVALUATION);
         let (u, v) = (p_uv.x, p_uv.y);
         match self {
             Surface::Plane { frame: f } => f.origin + f.x * u + f.y * v,
@@ -64,6 +68,7 @@ impl Surface {
     /// The point at `p_uv` with all derivatives to the second order. Second derivatives of offset surfaces
     /// whose basis is not elementary are central differences.
     pub fn jet(&self, p_uv: DVec2) -> SurfaceJet {
+        work::count(EVALUATION);
         let (u, v) = (p_uv.x, p_uv.y);
         match self {
             Surface::Plane { frame: f } => SurfaceJet {

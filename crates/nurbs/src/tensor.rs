@@ -1,8 +1,8 @@
 //! Sums over a tensor-product net and the quotient rule, shared by B-spline surfaces and Bézier patches.
 
-use crate::Vector;
 use crate::basis::Basis;
 use crate::homogeneous::Homogeneous;
+use crate::{Vector, work};
 use glam::DVec3;
 
 /// Derivatives `[by u][by v]` of total order below `R` (at most 3); the others are left zero.
@@ -17,6 +17,7 @@ pub(crate) fn derivatives<const R: usize>(
     points: &[DVec3],
     weights: Option<&[f64]>,
 ) -> [[DVec3; R]; R] {
+    work::count((bu.row(0).len() * bv.row(0).len()) as u64);
     let origin = points[bu.first * stride + bv.first];
     let mut jet = match weights {
         None => sum(bu, bv, stride, |k| points[k] - origin),

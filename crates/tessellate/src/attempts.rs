@@ -72,7 +72,7 @@ fn attempt(
     // 3. Fill it and prove it.
     let finest = context.closer.iter().fold(limits.tolerance, |least, place| least.min(place.tolerance));
     let bounds = SurfaceBounds::new(context.trimmed.surface.surface, uv_box, finest);
-    let mut prover = Prover::new(&bounds, limits, options, context.deadline, cancel, effort);
+    let mut prover = Prover::new(&bounds, limits, options, context.budget, cancel, effort);
     if are_loops_crossing && face.is_turned_somewhere() {
         prover = prover.for_crossing_loops();
     }

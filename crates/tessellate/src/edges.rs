@@ -13,7 +13,7 @@ mod turns;
 
 use self::corners::{passed_over, smooth_pieces};
 use self::turns::{turning_less, turning_less_between};
-use crate::clock::Deadline;
+use crate::budget::Budget;
 use crate::edge_use::{EdgePiece, EdgeSplitter, EdgeUse};
 use crate::limits::Limits;
 use crate::trace::Trace;
@@ -77,6 +77,11 @@ const HALVINGS: usize = 24;
 /// into memory. The faces of an edge that needs more fail.
 const MOST_CHORDS: usize = 200_000;
 
+/// An edge is given up where so many chords are expected after the first even rounds, when their bounds have
+/// become tight: it would come to [`MOST_CHORDS`] with most of its time gone.
+const HOPELESS: f64 = 16.0 * MOST_CHORDS as f64;
+const FIRST_ROUNDS: usize = 2;
+
 /// The clock is looked at once in so many chords: the bound of a chord on an offset surface takes up to a
 /// millisecond.
 const CHORDS_PER_LOOK: usize = 32;
@@ -92,25 +97,28 @@ struct Sampling<'e, 'a, 's> {
     /// Limits by which the faces need chords.
     of_faces: Limits,
     /// When the edge is given up.
-    deadline: Option<Deadline>,
+    budget: Budget,
 }
 
 impl Sampling<'_, '_, '_> {
     /// True where so many chords, or the time that they took, are too much.
     fn is_spent(&self, chords: usize) -> bool {
-        chords > MOST_CHORDS || self.deadline.is_some_and(Deadline::is_over)
+        chords > MOST_CHORDS || self.budget.is_over()
     }
 
-    /// The largest error of the chords between these parameters; none where the budget is spent.
-    fn worst(&self, t: &[f64]) -> Option<f64> {
-        let mut worst = 0.0f64;
+    /// The largest error of the chords between these parameters, and how many chords errors that shrink with
+    /// the square of the length let expect; none where the budget is spent.
+    fn worst(&self, t: &[f64]) -> Option<(f64, f64)> {
+        let (mut worst, mut expected) = (0.0f64, 0.0);
         for (k, pair) in t.windows(2).enumerate() {
             if k % CHORDS_PER_LOOK == 0 && self.is_spent(t.len()) {
                 return None;
             }
-            worst = worst.max(self.curve.chord_error(pair[0], pair[1]));
+            let error = self.curve.chord_error(pair[0], pair[1]);
+            worst = worst.max(error);
+            expected += (error / self.limits.tolerance).max(1.0).sqrt();
         }
-        Some(worst)
+        Some((worst, expected))
     }
 }
 
@@ -126,7 +134,7 @@ impl SampledEdge {
         limits: &Limits,
         splitter: Option<&dyn EdgeSplitter>,
         least: usize,
-        deadline: Option<Deadline>,
+        budget: Budget,
     ) -> Result<Self, MeshIssue> {
         let ends = [edge.start, edge.end].map(|v| part.vertices[v.index()].point);
         let Some(curve) = edge.curve.as_deref() else {
@@ -141,7 +149,7 @@ impl SampledEdge {
             // Faces need chords as short as their facets do, but never shorter than the tolerance of the edge
             // needs.
             of_faces: Limits { tolerance: CHORD_AIM * limits.largest(), ..*limits },
-            deadline,
+            budget,
         };
         let mut chords = Chords { t: vec![edge.range.start], ..Chords::default() };
         // 1. Pieces between corners, poles and creases.
@@ -207,13 +215,13 @@ impl Chords {
         self.fewest += probes.fewest();
         let allowed = sampling.limits.tolerance;
         let mut count = (probes.total() - WHOLE).ceil().max(1.0) as usize;
-        for _ in 0..EVEN_ROUNDS {
+        for round in 0..EVEN_ROUNDS {
             if sampling.is_spent(count) {
                 self.given_up = true;
                 return;
             }
             let t = probes.spread(count);
-            let Some(worst) = sampling.worst(&t) else {
+            let Some((worst, expected)) = sampling.worst(&t) else {
                 self.given_up = true;
                 return;
             };
@@ -224,6 +232,10 @@ impl Chords {
             }
             if worst <= allowed {
                 self.t.extend_from_slice(&turning_less(t, sampling, range)[1..]);
+                return;
+            }
+            if round >= FIRST_ROUNDS && expected > HOPELESS {
+                self.given_up = true;
                 return;
             }
             let factor = (worst / allowed).sqrt().clamp(1.0, MOST_FINER);

@@ -1,6 +1,6 @@
 //! What the stages of one face share.
 
-use crate::clock::Deadline;
+use crate::budget::Budget;
 use crate::closer::Closer;
 use crate::shared_edge::SharedEdge;
 use chordal_chart::TrimmedFace;
@@ -15,12 +15,12 @@ pub(crate) struct FaceContext<'a, 's> {
     /// Places at which its facets must keep a smaller tolerance.
     pub closer: &'a [Closer],
     /// When the face is given up.
-    pub deadline: Option<Deadline>,
+    pub budget: Budget,
 }
 
 impl FaceContext<'_, '_> {
     /// True where the time of the face is over.
     pub fn is_out_of_time(&self) -> bool {
-        self.deadline.is_some_and(Deadline::is_over)
+        self.budget.is_over()
     }
 }

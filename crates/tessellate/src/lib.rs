@@ -18,6 +18,7 @@
 //! may fill faces and cut edges in their own ways ([`method`]).
 
 mod attempts;
+mod budget;
 mod bulk;
 mod clock;
 mod closer;
@@ -55,6 +56,7 @@ mod stitch;
 mod trace;
 mod triangulate;
 
+pub use budget::FileBudget;
 pub use bulk::Bulk;
 pub use clock::Stopwatch;
 pub use limits::Bound;

@@ -1,5 +1,6 @@
 //! The options of a mesh, in the units of the part.
 
+use crate::budget::FileBudget;
 use crate::bulk::Bulk;
 use crate::edge_use::EdgeSplitter;
 use crate::fill_method::FillMethod;
@@ -33,8 +34,10 @@ pub struct Options {
     pub bulk: Bulk,
     /// Report the cells of subdivisions, to be drawn.
     pub record_cells: bool,
-    /// Time after which a face is given up.
+    /// Time after which a face or an edge is given up.
     pub face_timeout: Option<Duration>,
+    /// The work that all faces and edges of all parts with this budget may take together.
+    pub file_budget: Option<FileBudget>,
     /// Triangles after which a face is given up.
     pub face_triangles: usize,
 }
@@ -53,6 +56,7 @@ impl Options {
             bulk: Bulk::default(),
             record_cells: false,
             face_timeout: None,
+            file_budget: None,
             face_triangles: 20_000_000,
         }
     }
@@ -98,6 +102,10 @@ impl Options {
     }
     pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {
         self.face_timeout = timeout;
+        self
+    }
+    pub fn with_file_budget(mut self, budget: Option<FileBudget>) -> Self {
+        self.file_budget = budget;
         self
     }
     pub fn with_face_triangles(mut self, triangles: usize) -> Self {

@@ -1,5 +1,6 @@
 //! The stages of one part, top to bottom.
 
+use crate::budget::Budget;
 use crate::clock::Stopwatch;
 use crate::effort::Effort;
 use crate::face_result::{FaceResult, Meshed};
@@ -9,7 +10,7 @@ use crate::lower_bound::lower_bound;
 use crate::options::{Cancel, Options};
 use crate::orient::{settle_orientation, turn_inside_out};
 use crate::panics::caught;
-use crate::part_job::{PartJob, exact_surfaces};
+use crate::part_job::{Efforts, PartJob, exact_surfaces};
 use crate::parting::{FindCuts, part_facets};
 use crate::pcurve_gap::pcurve_gap;
 use crate::report::{FaceReport, PartReport};
@@ -58,7 +59,8 @@ fn in_healings(
     done: &(dyn Fn(usize) + Sync),
 ) -> (PartMesh, PartReport) {
     let mut known = KnownFaces::default();
-    let mut made = mesh_once(part, &known, options, cancel, find, done);
+    let mut efforts = Efforts::default();
+    let mut made = mesh_once(part, &known, options, &mut efforts, cancel, find, done);
     for _ in 0..HEALINGS {
         let is_new = made.crossed.iter().any(|face| !known.touching.contains(face));
         let uncrossed = made.uncrossed.take();
@@ -73,7 +75,8 @@ fn in_healings(
             }
             None => (made.report.healed.clone(), Vec::new()),
         };
-        let again = mesh_once(healed.as_deref().unwrap_or(part), &known, options, cancel, find, &|_| ());
+        let healed_part = healed.as_deref().unwrap_or(part);
+        let again = mesh_once(healed_part, &known, options, &mut efforts, cancel, find, &|_| ());
         // What still crosses is left as the file has it.
         if again.crossed.len() >= made.crossed.len() {
             break;
@@ -101,15 +104,17 @@ fn mesh_once(
     part: &Part,
     known: &KnownFaces,
     options: &Options,
+    efforts: &mut Efforts,
     cancel: &Cancel,
     find: Option<&FindCuts<'_>>,
     done: &(dyn Fn(usize) + Sync),
 ) -> MeshedOnce {
+    efforts.cover(part);
     let mut report = PartReport::default();
     // 1. Prepare the surfaces.
     let clock = Stopwatch::of_wall();
     let exact = exact_surfaces(part);
-    let job = PartJob::new(part, &exact, options, cancel).with_known(known.clone());
+    let job = PartJob::new(part, &exact, options, efforts, cancel).with_known(known.clone());
     report.seconds.heal = clock.seconds();
     // 2. Sample the edges.
     let clock = Stopwatch::of_wall();
@@ -127,7 +132,8 @@ fn mesh_once(
     }
     report.seconds.faces = clock.seconds();
     let crossed = crossed_faces(&result);
-    let uncrossed = uncrossed_part(&job, &result.edges, &crossed);
+    let healing = |budget| uncrossed_part(&job, &result.edges, &crossed, budget);
+    let uncrossed = job.within_budget(&job.efforts.healing, healing);
     // 4. Join the faces.
     let clock = Stopwatch::of_wall();
     let PassResult { edges, fewest, edges_given_up, edge_faults, faces, rounds } = result;
@@ -152,7 +158,12 @@ fn crossed_faces(result: &PassResult) -> Vec<usize> {
 }
 
 /// The part with loops that do not cross, where faces have some that do.
-fn uncrossed_part(job: &PartJob<'_>, edges: &[EdgeSamples], crossed: &[usize]) -> Option<Uncrossed> {
+fn uncrossed_part(
+    job: &PartJob<'_>,
+    edges: &[EdgeSamples],
+    crossed: &[usize],
+    budget: Budget,
+) -> Option<Uncrossed> {
     if crossed.is_empty() || job.cancel.is_cancelled() {
         return None;
     }
@@ -182,7 +193,7 @@ fn uncrossed_part(job: &PartJob<'_>, edges: &[EdgeSamples], crossed: &[usize]) -
             .collect();
         uncrossed(job.part, &charts, job.resolution, job.limits.tolerance)
     });
-    healed.ok().flatten()
+    healed.ok().flatten().filter(|_| !budget.is_over())
 }
 
 fn face_reports(

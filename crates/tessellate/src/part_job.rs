@@ -1,5 +1,6 @@
 //! What all stages of one part share: its surfaces, the uses of its edges, and the limits.
 
+use crate::budget::{Budget, Spent};
 use crate::edge_use::EdgeUse;
 use crate::known_faces::KnownFaces;
 use crate::limits::{Limits, resolution};
@@ -8,11 +9,28 @@ use chordal_brep::{Face, FaceGeometry, Issue, Loop, MeshIssue, Part, Pcurve};
 use chordal_chart::FaceSurface;
 use chordal_nurbs::{DVec3, Surface};
 use std::borrow::Cow;
-use std::sync::atomic::AtomicU64;
 
 /// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter. It
 /// costs at most half a percent more triangles.
 const AIM: f64 = 0.995;
+
+/// What the faces and edges of a part took so far.
+#[derive(Debug, Default)]
+pub(crate) struct Efforts {
+    pub faces: Vec<Spent>,
+    pub edges: Vec<Spent>,
+    /// Making loops that do not cross, of all faces together.
+    pub healing: Spent,
+}
+
+impl Efforts {
+    /// With room for all faces and edges of a part; healing adds edges.
+    pub fn cover(&mut self, part: &Part) {
+        let (faces, edges) = (part.faces.len(), part.edges.len());
+        self.faces.resize_with(faces.max(self.faces.len()), Spent::default);
+        self.edges.resize_with(edges.max(self.edges.len()), Spent::default);
+    }
+}
 
 /// One part to be meshed.
 pub(crate) struct PartJob<'a> {
@@ -22,8 +40,8 @@ pub(crate) struct PartJob<'a> {
     pub cancel: &'a Cancel,
     pub resolution: f64,
     pub known: KnownFaces,
-    /// Of every face: microseconds that all attempts took.
-    pub spent: Vec<AtomicU64>,
+    /// What faces and edges took so far, in this pass over the part and earlier ones.
+    pub efforts: &'a Efforts,
     /// Of every face; the reader's reason where there is none.
     pub surfaces: Vec<Result<FaceSurface<'a>, &'a Issue>>,
     /// Of every edge: the faces that use it, each with its curve in that face's parameters.
@@ -38,6 +56,7 @@ impl<'a> PartJob<'a> {
         part: &'a Part,
         exact: &'a [ExactSurface<'a>],
         options: &'a Options,
+        efforts: &'a Efforts,
         cancel: &'a Cancel,
     ) -> Self {
         let resolution = resolution(part, options.tolerance);
@@ -53,7 +72,7 @@ impl<'a> PartJob<'a> {
             cancel,
             resolution,
             known: KnownFaces::default(),
-            spent: part.faces.iter().map(|_| AtomicU64::new(0)).collect(),
+            efforts,
             surfaces: exact
                 .iter()
                 .map(|found| found.as_ref().map(|s| FaceSurface::new(s, resolution)).map_err(|issue| *issue))
@@ -82,6 +101,11 @@ impl<'a> PartJob<'a> {
             Some(EdgeUse { surface, pcurve, reach: self.reach[face] }.paced(model, self.limits.tolerance))
         });
         with_surface.collect()
+    }
+
+    /// Works at a face, an edge or the healing of loops within what its budget has left.
+    pub fn within_budget<T>(&self, spent: &Spent, work_on: impl FnOnce(Budget) -> T) -> T {
+        spent.within(self.options.face_timeout, self.options.file_budget.as_ref(), work_on)
     }
 
     /// The surface of a face.

@@ -26,7 +26,7 @@ mod sampled;
 pub(crate) use judge::Fault;
 pub(crate) use requests::ChordRequests;
 
-use crate::clock::Deadline;
+use crate::budget::Budget;
 use crate::effort::{Effort, Remedy, Setback};
 use crate::face_mesh::FaceMesh;
 use crate::face_result::Proof;
@@ -45,9 +45,9 @@ const STEPS: (usize, usize) = (16, 4_000);
 /// The limit for a face that cannot be proven, because its loops cross: a little effort suffices.
 const HOPELESS_STEPS: (usize, usize) = (4, 100);
 
-/// The deadline and the cancel flag are checked once in this many steps: often enough to stop within
-/// milliseconds, too rarely to cost anything.
-pub(crate) const STEPS_PER_LOOK: usize = 256;
+/// The budget and the cancel flag are checked once in this many steps: a step takes a microsecond on a
+/// cylinder and up to a millisecond on an offset surface.
+pub(crate) const STEPS_PER_LOOK: usize = 16;
 
 /// Flips of triangles without area are followed by refining, and that by flips, this often. Without a limit,
 /// the two could undo each other for ever.
@@ -57,7 +57,7 @@ pub(crate) struct Prover<'a> {
     bounds: &'a SurfaceBounds<'a>,
     limits: &'a Limits,
     most_triangles: usize,
-    deadline: Option<Deadline>,
+    budget: Budget,
     cancel: &'a Cancel,
     scratch: Vec<Piece>,
     /// Nothing can be bounded on this surface, or nothing is to be: samples must do.
@@ -74,7 +74,7 @@ impl<'a> Prover<'a> {
         bounds: &'a SurfaceBounds<'a>,
         limits: &'a Limits,
         options: &Options,
-        deadline: Option<Deadline>,
+        budget: Budget,
         cancel: &'a Cancel,
         effort: Effort,
     ) -> Self {
@@ -84,7 +84,7 @@ impl<'a> Prover<'a> {
             bounds,
             limits,
             most_triangles: options.face_triangles,
-            deadline,
+            budget,
             cancel,
             scratch: Vec::new(),
             sampled: options.bound == Bound::Estimated || !bounds.is_bounded(),
@@ -209,7 +209,7 @@ impl<'a> Prover<'a> {
         if self.cancel.is_cancelled() {
             return Err(MeshIssue::Cancelled);
         }
-        if self.deadline.is_some_and(|deadline| deadline.is_over()) {
+        if self.budget.is_over() {
             return Err(MeshIssue::OutOfTime { elements });
         }
         Ok(())

@@ -10,7 +10,7 @@
 //! nothing.
 
 use crate::attempts::mesh_face;
-use crate::clock::{Deadline, Stopwatch};
+use crate::budget::Budget;
 use crate::closer::Closer;
 use crate::edges::{SampledEdge, split_chords};
 use crate::effort::{Effort, MAX_ROUNDS, Setback};
@@ -22,10 +22,9 @@ use crate::part_job::PartJob;
 use crate::shared_edge::SharedEdge;
 use chordal_brep::{Edge, MeshIssue};
 use chordal_chart::{EdgeSamples, FaceSurface, TrimmedFace};
-use chordal_nurbs::Curve;
+use chordal_nurbs::{Curve, work};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
 
 /// Rounds in which chords are halved; later ones are quartered. Where a surface turns within almost no
 /// distance, halves do not get there in the rounds that there are.
@@ -128,11 +127,15 @@ impl<'j, 'a> Pass<'j, 'a> {
             return Ok(SampledEdge::default());
         }
         let splitter = self.options_of_edge(edge).edge_splitter.as_deref();
-        let mut sampled = caught(|| {
+        let sample = |budget| {
             let uses = job.edge_uses(edge);
-            let deadline = job.options.face_timeout.and_then(Deadline::after);
-            SampledEdge::new(job.part, &job.part.edges[edge], &uses, &job.limits, splitter, least, deadline)
-        })??;
+            let model = &job.part.edges[edge];
+            let sampled = SampledEdge::new(job.part, model, &uses, &job.limits, splitter, least, budget);
+            if work::is_over() { Err(MeshIssue::EdgeGivenUp) } else { sampled }
+        };
+        let spent = &job.efforts.edges[edge];
+        let mut sampled = caught(|| job.within_budget(spent, sample))??;
+        spent.made(sampled.samples.t.len(), job.options.file_budget.as_ref());
         // In a pass by the default, for some of its faces.
         let is_left_to_default = splitter.is_none() && job.options.edge_splitter.is_some();
         let has_curve = job.part.edges[edge].curve.is_some();
@@ -182,18 +185,22 @@ impl<'j, 'a> Pass<'j, 'a> {
         if job.cancel.is_cancelled() {
             return Ok(Err(MeshIssue::Cancelled));
         }
-        let spent = Duration::from_micros(job.spent[face].load(Ordering::Relaxed));
-        let left = job.options.face_timeout.map(|timeout| timeout.saturating_sub(spent));
-        if left == Some(Duration::ZERO) {
-            return Ok(Err(MeshIssue::OutOfTime { elements: 0 }));
+        let spent = &job.efforts.faces[face];
+        let result = job.within_budget(spent, |budget| {
+            if budget.is_over() {
+                return Ok(Err(MeshIssue::OutOfTime { elements: 0 }));
+            }
+            let result = self.mesh_within(face, surface, edges, round, doubled, budget);
+            // What reached the limit may have ended early anywhere.
+            if work::is_over() { Ok(Err(out_of_time(&result))) } else { result }
+        });
+        if let Ok(Ok(meshed)) = &result {
+            spent.made(meshed.triangles.len(), job.options.file_budget.as_ref());
         }
-        let watch = Stopwatch::of_thread();
-        let result = self.mesh_within(face, surface, edges, round, doubled, left.and_then(Deadline::after));
-        job.spent[face].fetch_add((1e6 * watch.seconds()) as u64, Ordering::Relaxed);
         result
     }
 
-    /// Meshes one face before the deadline.
+    /// Meshes one face within the budget.
     fn mesh_within(
         &self,
         face: usize,
@@ -201,7 +208,7 @@ impl<'j, 'a> Pass<'j, 'a> {
         edges: &[EdgeSamples],
         round: usize,
         doubled: &[SharedEdge],
-        deadline: Option<Deadline>,
+        budget: Budget,
     ) -> Result<Meshed, Vec<(u32, u32)>> {
         let job = self.job;
         let context = FaceContext {
@@ -215,7 +222,7 @@ impl<'j, 'a> Pass<'j, 'a> {
             },
             doubled,
             closer: self.closer.get(face).map_or(&[], Vec::as_slice),
-            deadline,
+            budget,
         };
         let options = self.options_of_face(face);
         let attempt = |effort: Effort| {
@@ -314,5 +321,14 @@ impl<'j, 'a> Pass<'j, 'a> {
         dirty.sort_unstable();
         dirty.dedup();
         dirty
+    }
+}
+
+/// The reason of a face that reached its limit, with the triangles that it had where that is known.
+fn out_of_time(result: &Result<Meshed, Vec<(u32, u32)>>) -> MeshIssue {
+    match result {
+        Ok(Err(issue @ MeshIssue::OutOfTime { .. })) => issue.clone(),
+        Ok(Ok(meshed)) => MeshIssue::OutOfTime { elements: meshed.triangles.len() },
+        _ => MeshIssue::OutOfTime { elements: 0 },
     }
 }

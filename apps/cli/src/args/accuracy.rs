@@ -4,7 +4,6 @@ use super::values::*;
 use chordal::methods::{EdgeMethodEntry, StrategyEntry};
 use chordal::{Bound, InputFormat, MeshOptions, ReadOptions, Sewing, Tolerance, Winding};
 use clap::Args;
-use std::time::Duration;
 
 /// What is requested of a mesh, and the threads.
 #[derive(Debug, Args)]
@@ -53,20 +52,22 @@ pub struct AccuracyArgs {
     /// Number of threads [default: one per core]. The mesh is the same for any number.
     #[arg(long, value_name = "N", value_parser = parse_jobs, allow_hyphen_values = true)]
     pub jobs: Option<usize>,
-    /// Limit of processor time per face and per edge in seconds, 0 for none [default: 3; 60 with a named strategy or
-    /// edge method].
+    /// Limit of processor time per face and per edge in seconds of an ordinary core, 0 for none [default: 3; 60 with a
+    /// named strategy or edge method].
     #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
     pub face_timeout: Option<TimeoutArg>,
+    /// Limit of processor time of all faces of a file in seconds, 0 for none; larger files than a megabyte and finer
+    /// tolerances than 0.1 % have proportionally more [default: as --face-timeout].
+    #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
+    pub file_timeout: Option<TimeoutArg>,
+    /// Limit of the memory that the triangles of a file take in MB, 0 for none; larger files than a megabyte and finer
+    /// tolerances than 0.1 % have proportionally more.
+    #[arg(long, value_name = "MB", default_value = "1000")]
+    pub memory: u64,
     /// Do not look for triangles of closed shells that cut each other, and do not refine where they do.
     #[arg(long)]
     pub no_self_intersections: bool,
 }
-
-/// A face of a sound file takes milliseconds by the default strategy; a few hostile ones must not take minutes.
-const DEFAULT_TIMEOUT: Duration = Duration::from_secs(3);
-
-/// The methods of the literature take seconds where the default takes a tenth of one.
-const METHOD_TIMEOUT: Duration = Duration::from_secs(60);
 
 impl AccuracyArgs {
     /// An option that has no effect is refused.
@@ -94,7 +95,7 @@ impl AccuracyArgs {
         };
         let options = MeshOptions::default();
         let default_angle = options.mesher().angle;
-        options
+        let options = options
             .with_tolerance(self.tolerance)
             .with_boundary_tolerance(self.boundary_tolerance)
             .with_angle(self.angle.map_or(default_angle, |given| given.0))
@@ -103,14 +104,10 @@ impl AccuracyArgs {
             .with_edge_splitter(self.edge_method.edge_splitter())
             .with_sewing(self.sew.unwrap_or_default())
             .with_bound(bound)
-            .with_face_timeout(self.face_timeout())
             .with_self_intersections(!self.no_self_intersections)
-    }
-
-    fn face_timeout(&self) -> Option<Duration> {
-        let is_default = self.strategy.fill_method().is_none() && self.edge_method.edge_splitter().is_none();
-        let default = if is_default { DEFAULT_TIMEOUT } else { METHOD_TIMEOUT };
-        self.face_timeout.map_or(Some(default), |given| given.0)
+            .with_memory((self.memory > 0).then(|| self.memory.saturating_mul(1_000_000)));
+        let options = self.face_timeout.iter().fold(options, |o, t| o.with_face_timeout(t.0));
+        self.file_timeout.iter().fold(options, |o, t| o.with_file_timeout(t.0))
     }
 
     /// As options of the readers.

@@ -65,6 +65,13 @@ pub enum AuditIssue {
         /// The pair of faces with the most pairs of triangles; twice the same where a face cuts itself.
         faces: [Source; 2],
     },
+    /// Not all triangles of a closed shell were compared: so many lie so close that it would take too long.
+    TooManyFacetsMeet {
+        /// Pairs of faces of which this is so.
+        face_pairs: usize,
+        /// The first pair; twice the same for a face by itself.
+        faces: [Source; 2],
+    },
     /// Triangles whose height is only rounding.
     DegenerateTriangles {
         /// Number of triangles.
@@ -258,6 +265,7 @@ impl AuditIssue {
             AuditIssue::NonManifoldEdges { .. } => "non-manifold-edges",
             AuditIssue::InsideOut { .. } => "inside-out",
             AuditIssue::SelfIntersections { .. } => "self-intersections",
+            AuditIssue::TooManyFacetsMeet { .. } => "too-many-facets-meet",
             AuditIssue::DegenerateTriangles { .. } => "degenerate-triangles",
             AuditIssue::DuplicateTriangles { .. } => "duplicate-triangles",
             AuditIssue::InvertedTriangles { .. } => "inverted-triangles",
@@ -336,6 +344,13 @@ impl fmt::Display for AuditIssue {
                         write!(f, "; in {n} of these pairs the exact faces or their edges cross in the file")
                     }
                 }
+            }
+            AuditIssue::TooManyFacetsMeet { face_pairs, faces: [a, b] } => {
+                let pairs = count(*face_pairs, "pair of faces", "pairs of faces");
+                write!(
+                    f,
+                    "too many triangles meet to tell whether all cut each other, in {pairs}, first {a} and {b}"
+                )
             }
             AuditIssue::DegenerateTriangles { triangles } => {
                 write!(f, "{} without area", count(*triangles, "triangle", "triangles"))

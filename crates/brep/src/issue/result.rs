@@ -39,6 +39,13 @@ pub enum ResultIssue {
         /// How many faces the part has.
         faces: usize,
     },
+    /// The faces of the file need more time or triangles than a file may take; each was given an equal share.
+    SharedLimits {
+        /// Seconds that each face or edge was given; none for no limit.
+        seconds: Option<f64>,
+        /// Triangles that each face was given.
+        triangles: usize,
+    },
     /// The format of the output rounds coordinates by a large share of the tolerance.
     Rounding {
         /// The name of the format.
@@ -72,6 +79,7 @@ impl ResultIssue {
             ResultIssue::OverTolerance { .. } => "over-tolerance",
             ResultIssue::Leaking { .. } => "leaking-shell",
             ResultIssue::NeverPlaced { .. } => "never-placed",
+            ResultIssue::SharedLimits { .. } => "shared-limits",
             ResultIssue::Rounding { .. } => "rounding",
             ResultIssue::CollapsedTriangles { .. } => "collapsed-triangles",
             ResultIssue::EmptyFile => "empty-file",
@@ -97,6 +105,13 @@ impl fmt::Display for ResultIssue {
             ResultIssue::NeverPlaced { faces } => {
                 let faces = count(*faces, "face is", "faces are");
                 write!(f, "the part is never placed in the assembly: its {faces} not meshed")
+            }
+            ResultIssue::SharedLimits { seconds, triangles } => {
+                f.write_str("the faces need more than the limits of the file; each was given ")?;
+                if let Some(seconds) = seconds {
+                    write!(f, "{} s and ", number(*seconds, 3))?;
+                }
+                f.write_str(&count(*triangles, "triangle", "triangles"))
             }
             ResultIssue::Rounding { format, distance, tolerance } => {
                 let percent = number(100.0 * distance / tolerance, 2);

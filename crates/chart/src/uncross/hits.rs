@@ -7,7 +7,7 @@ use crate::keys::{Key, Segment};
 use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
 use chordal_brep::VertexId;
-use chordal_nurbs::{CurveInverter, DVec2, DVec3, Range, orient};
+use chordal_nurbs::{CurveInverter, DVec2, DVec3, Range, orient, work};
 
 /// A crossing of chords is followed to the curves by this many cuts at most: each leaves a chord of half the length or far
 /// less.
@@ -15,6 +15,9 @@ const STEPS: usize = 48;
 
 /// Faces with more crossings than this are not mended: their loops are noise.
 const MOST_MEETINGS: usize = 5_000;
+
+/// The work of a pair of sides.
+const PAIR: u64 = 4;
 
 /// One side of a polygon of the chart.
 #[derive(Clone, Copy)]
@@ -50,6 +53,10 @@ fn near_pairs(sides: &[Side], mut visit: impl FnMut(&Side, &Side) -> bool) {
     let mut active: Vec<usize> = Vec::new();
     for i in order {
         let (from, to) = (low(&sides[i]), high(&sides[i]));
+        work::count(PAIR * active.len() as u64);
+        if work::is_over() {
+            return;
+        }
         active.retain(|&j| high(&sides[j]).x >= from.x);
         for &j in &active {
             if low(&sides[j]).y <= to.y && high(&sides[j]).y >= from.y && !visit(&sides[i], &sides[j]) {

@@ -28,7 +28,7 @@
 use super::area;
 use crate::keys::ChartPoint;
 use crate::trimmed_face::OpenLoop;
-use chordal_nurbs::DVec2;
+use chordal_nurbs::{DVec2, work};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -247,8 +247,13 @@ impl<'a> Cuts<'a> {
         let mut heap = BinaryHeap::new();
         self.offer(0, &reached, nearest, &mut heap);
         let mut left = self.most_tests();
+        let sides = self.walls.iter().map(|wall| wall.points.len() as u64).sum();
         while let Some(next) = heap.pop() {
             left = left.checked_sub(1)?;
+            work::count(sides);
+            if work::is_over() {
+                return None;
+            }
             let node = next.to.0;
             if reached[node].is_some() || !self.is_free(next.p, next.q) {
                 continue;

@@ -85,8 +85,9 @@ pub fn measure_against(
     let cancel = Cancel::default();
     let opened = Model::open(input)?;
     let model = opened.brep();
-    let resolved = resolve(model, options, &cancel).map_err(|error| error.named(opened.name()))?;
-    let parts = mesh_parts(model, &resolved, &cancel, &|_| ());
+    let resolved =
+        resolve(model, options, opened.byte_count(), &cancel).map_err(|error| error.named(opened.name()))?;
+    let (parts, _) = mesh_parts(model, &resolved, &cancel, &|_| ());
     let mesh_triangles: Vec<[DVec3; 3]> =
         soup.triangles.iter().map(|t| t.map(|i| soup.positions[i as usize])).collect();
     let mesh = TriangleTree::new(mesh_triangles.clone());

@@ -8,7 +8,6 @@ use chordal_mesh::{FaceMesh, PartMesh};
 use chordal_nurbs::Surface;
 use chordal_tessellate::{Bound, Cancel, Options, tessellate_part};
 use glam::{DAffine3, DVec2, DVec3};
-use std::time::Duration;
 
 /// Tolerance of the coarse mesh, relative to the box of the edges.
 const COARSE: f64 = 0.01;
@@ -26,7 +25,7 @@ pub(super) fn include(
     found: &mut TightBox,
     part: &Part,
     part_use: &PartUse,
-    face_timeout: Option<Duration>,
+    options: &Options,
     cancel: &Cancel,
 ) {
     let faces: Vec<&Face> = part.faces.iter().filter(|f| reaches_out(f, found, part_use)).collect();
@@ -48,11 +47,9 @@ pub(super) fn include(
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return;
     }
-    let mut options = Options::new(tolerance)
-        .with_angle(Some(0.6))
-        .with_bound(Bound::Estimated)
-        .with_face_timeout(face_timeout);
-    options.face_triangles = GIVE_UP;
+    let mut options = options.clone().with_angle(Some(0.6)).with_bound(Bound::Estimated);
+    options.tolerance = tolerance;
+    options.face_triangles = options.face_triangles.min(GIVE_UP);
     let (mesh, _) = tessellate_part(&coarse, &options, cancel, &|_| ());
     for world in &part_use.worlds {
         mesh.positions.iter().for_each(|&p| found.include(world.transform_point3(p)));

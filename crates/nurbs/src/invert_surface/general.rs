@@ -8,7 +8,7 @@
 
 use super::Inversion;
 use super::terrain::Terrain;
-use crate::{Box3, Surface, SurfaceJet, UvBox};
+use crate::{Box3, Surface, SurfaceJet, UvBox, work};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 
@@ -163,7 +163,7 @@ pub(super) fn invert(
     if let Some(found) = local.filter(|found| found.distance <= enough || found.is_close(terrain)) {
         return found.inversion();
     }
-    let grid = grid.get_or_init(|| Grid::new(terrain.surface, uv));
+    let grid = grid.get_or_init(|| work::uncounted(|| Grid::new(terrain.surface, uv)));
     let mut best = local.unwrap_or(Foot { uv: uv.center(), distance: f64::INFINITY, speed: DVec2::ZERO });
     for (height, start) in grid.valleys(p) {
         // On the surface, up to rounding, or lower than this valley can be: nothing is closer.

@@ -3,7 +3,7 @@
 use crate::conic::wrapped;
 use crate::invert_curve::{ON_AXIS, Seeds, reach};
 use crate::math;
-use crate::{Curve, Range};
+use crate::{Curve, Range, work};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 
@@ -37,7 +37,7 @@ impl<'a> Profile<'a> {
         if self.range.is_finite() && self.curve.domain().is_finite() {
             return self
                 .seeds
-                .get_or_init(|| Seeds::new(self.curve, self.range))
+                .get_or_init(|| work::uncounted(|| Seeds::new(self.curve, self.range)))
                 .closest(of, residual, near)
                 .t;
         }

@@ -1,5 +1,6 @@
 //! Something found out about a value once and kept beside it.
 
+use crate::work;
 use std::sync::OnceLock;
 
 /// A derived fact: it follows from the rest of the value, so that two values are equal whether or not it is
@@ -22,6 +23,6 @@ impl<T> PartialEq for Memo<T> {
 impl<T: Copy> Memo<T> {
     /// The fact, found by `find` the first time.
     pub fn get(&self, find: impl FnOnce() -> T) -> T {
-        *self.0.get_or_init(find)
+        *self.0.get_or_init(|| work::uncounted(find))
     }
 }

@@ -18,8 +18,11 @@ mod setting;
 mod slope;
 
 use crate::math;
-use crate::{Piece, Surface, SurfaceBounds};
+use crate::{Piece, Surface, SurfaceBounds, work};
 use glam::{DVec2, DVec3};
+
+/// The work of a bound beside that of its pieces and evaluations.
+const FACET: u64 = 200;
 
 /// One facet to be bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +63,7 @@ pub fn facet_bound(
     enough: f64,
     scratch: &mut Vec<Piece>,
 ) -> FacetBound {
+    work::count(FACET);
     let mut bound = match bounds.surface() {
         Surface::Plane { .. } => FacetBound::EXACT,
         Surface::Cylinder { radius, .. } => elementary::cone(facet, [*radius; 3], 1.0),

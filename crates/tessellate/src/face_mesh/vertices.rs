@@ -29,6 +29,8 @@ pub(super) struct Vertices {
     pub at_pole: Vec<bool>,
     /// Regularises metrics that vanish in some direction.
     floor: f64,
+    /// The middle of the box of the loops, which is that of the face.
+    middle: DVec2,
 }
 
 impl Vertices {
@@ -62,6 +64,7 @@ impl FaceMesh<'_, '_> {
         let middle = points().sum::<DVec3>() / self.chart.points.len().max(1) as f64;
         let radius = points().fold(f64::MIN_POSITIVE, |m, p| m.max(p.distance(middle)));
         self.vertices.floor = math::square(LEAST_CHORDS / radius);
+        self.vertices.middle = UvBox::from_points(self.mesh.points.iter().copied()).center();
         for i in 0..self.mesh.points.len() {
             self.measure(self.mesh.points[i]);
         }
@@ -94,6 +97,6 @@ impl FaceMesh<'_, '_> {
     }
 
     fn beside_pole(&self, p_uv: DVec2) -> DVec2 {
-        p_uv.lerp(UvBox::from_points(self.mesh.points.iter().copied()).center(), BESIDE_POLE)
+        p_uv.lerp(self.vertices.middle, BESIDE_POLE)
     }
 }

@@ -16,8 +16,7 @@
 //!
 //! Ears that are convex and empty go first; where there is none, the one that is least wrong.
 
-use chordal_nurbs::DVec2;
-use chordal_nurbs::orient;
+use chordal_nurbs::{DVec2, orient, work};
 
 /// Polygons larger than this are not worth the quadratic time.
 const MAX_POINTS: usize = 4000;
@@ -26,7 +25,7 @@ const MAX_POINTS: usize = 4000;
 const MAX_CUTS: usize = 200;
 
 /// Triangulates loops given as in [`super::sweep`], the first being the outer one; `None` if they are too
-/// large.
+/// large, or where the limit of the work is reached.
 pub(crate) fn clip_ears(points: &[DVec2], loops: &[(u32, u32)]) -> Option<Vec<[u32; 3]>> {
     if points.len() > MAX_POINTS || loops.is_empty() {
         return None;
@@ -35,6 +34,9 @@ pub(crate) fn clip_ears(points: &[DVec2], loops: &[(u32, u32)]) -> Option<Vec<[u
     let mut polygons = vec![join_holes(points, loops)];
     let mut cuts = 0;
     while let Some(polygon) = polygons.pop() {
+        if work::is_over() {
+            return None;
+        }
         if polygon.len() < 3 {
             continue;
         }
@@ -58,7 +60,8 @@ fn crossing(points: &[DVec2], polygon: &[u32]) -> Option<(usize, usize)> {
     let n = polygon.len();
     let p = |i: usize| points[polygon[i % n] as usize];
     let apart = |a: f64, b: f64| a > 0.0 && b < 0.0 || a < 0.0 && b > 0.0;
-    (0..n.saturating_sub(2)).find_map(|i| {
+    (0..n.saturating_sub(2)).take_while(|_| !work::is_over()).find_map(|i| {
+        work::count(n as u64);
         let (a, b) = (p(i), p(i + 1));
         let (low, high) = (a.min(b), a.max(b));
         let j = (i + 2..n).find(|&j| {
@@ -91,7 +94,7 @@ fn clip(points: &[DVec2], mut polygon: Vec<u32>, triangles: &mut Vec<[u32; 3]>) 
         polygon.reverse();
     }
     let start = triangles.len();
-    while polygon.len() > 3 {
+    while polygon.len() > 3 && !work::is_over() {
         let at = best_ear(points, &polygon);
         let n = polygon.len();
         triangles.push([polygon[(at + n - 1) % n], polygon[at], polygon[(at + 1) % n]]);
@@ -110,6 +113,7 @@ fn join_holes(points: &[DVec2], loops: &[(u32, u32)]) -> Vec<u32> {
     let mut polygon: Vec<u32> = (loops[0].0..loops[0].1).collect();
     for &(start, end) in &loops[1..] {
         let n = (end - start) as usize;
+        work::count((n * polygon.len()) as u64);
         let mut best = (f64::INFINITY, 0, 0);
         for (i, &a) in polygon.iter().enumerate() {
             for j in 0..n {
@@ -132,6 +136,9 @@ fn best_ear(points: &[DVec2], polygon: &[u32]) -> usize {
     let p = |i: usize| points[polygon[i % n] as usize];
     let mut least_wrong = (f64::NEG_INFINITY, 0);
     for i in 0..n {
+        if work::is_over() {
+            break;
+        }
         let (a, b, c) = (p(i + n - 1), p(i), p(i + 1));
         let turn = orient(a, b, c);
         let size = (b - a).length_squared() + (c - b).length_squared();

@@ -7,7 +7,7 @@
 use super::{Ball4, Cell};
 use crate::basis::Basis;
 use crate::math;
-use crate::{BezierPatch, UvBox};
+use crate::{BezierPatch, UvBox, work};
 use glam::{DVec2, DVec3, DVec4};
 
 /// A control net with its degrees; homogeneous points (x w, y w, z w, w).
@@ -61,10 +61,17 @@ impl Net {
 /// time to clear them.
 const STACK_WIDTH: usize = 10;
 
+/// The work of a value beside that of its control points.
+const POINT: u64 = 16;
+
+/// The work of all derivatives for one control point.
+const DERIVATIVES: u64 = 40;
+
 impl Net {
     /// The value at a point of the unit square.
     pub fn point(&self, p: DVec2) -> DVec4 {
         let [m, n] = self.degree;
+        work::count(self.points.len() as u64 + POINT);
         if m.max(n) >= STACK_WIDTH {
             let (bu, bv) = (Basis::<1>::bernstein(m, p.x), Basis::<1>::bernstein(n, p.y));
             return self.blend(bu.row(0), bv.row(0));
@@ -149,6 +156,7 @@ fn middle(patch: &BezierPatch) -> DVec3 {
 }
 
 fn cell(net: &Net, origin: DVec3, over: UvBox) -> Cell {
+    work::count(DERIVATIVES * net.points.len() as u64);
     let size = over.size();
     let mut nets = Nets::new(net);
     let (u, v) = ((0, size.x), (1, size.y));

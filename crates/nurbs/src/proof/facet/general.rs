@@ -26,8 +26,11 @@ use super::setting::{Modelled, Setting};
 use super::slope::{distortion, steepness, weight_slope};
 use super::{Facet, FacetBound};
 use crate::math;
-use crate::{Piece, SurfaceBounds, UvBox};
+use crate::{Piece, SurfaceBounds, UvBox, work};
 use glam::{DVec2, DVec3};
+
+/// The work of the models of one piece.
+const PIECE: u64 = 200;
 
 /// Bounds a facet, with as little work as shows that it is within `enough`:
 ///
@@ -85,6 +88,7 @@ impl<'a, 'b> Problem<'a, 'b> {
         let uv_box = UvBox::from_points(uv);
         pieces.clear();
         let kink = bounds.pieces(uv_box, pieces);
+        work::count(PIECE * pieces.len() as u64);
         let pieces: &[Piece] = pieces;
         let sides = [facet.xyz[2] - facet.xyz[1], facet.xyz[0] - facet.xyz[2], facet.xyz[1] - facet.xyz[0]];
         let cross = sides[0].cross(sides[1]);
