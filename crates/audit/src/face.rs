@@ -209,10 +209,6 @@ fn check_triangles(
     let origin = context.mesh.positions[0];
     let positions = &context.mesh.positions;
     let corners = &chart.mesh.corners;
-    let shortest = TURN_LENGTH * context.options.tolerance;
-    // Where edges end beside their vertex, the way from the one to the other is the file's, and no mesh turns less.
-    let gap = found.audit.gap;
-    let at_vertex = |p: u32| matches!(context.mesh.origins[p as usize], Origin::Vertex(_));
     let check = |triangles: &[[u32; 3]]| {
         let mut sum = TriangleFindings { least_cosine: 1.0, ..TriangleFindings::default() };
         for t in triangles {
@@ -227,9 +223,7 @@ fn check_triangles(
             sum.folded += usize::from(if chart.turned { turn >= 0.0 } else { turn <= 0.0 });
             sum.against += usize::from(against);
             let sides = [p.distance(q), q.distance(r), r.distance(p)];
-            let is_loose = |i: usize| at_vertex(c[i].position) || at_vertex(c[(i + 1) % 3].position);
-            let least = |i: usize| if is_loose(i) { shortest.max(gap) } else { shortest };
-            for i in (0..3).filter(|&i| sides[i] > least(i)) {
+            for i in (0..3).filter(|&i| sides[i] > TURN_LENGTH * context.options.tolerance) {
                 let (n, m) = (c[i].normal, c[(i + 1) % 3].normal);
                 if n != DVec3::ZERO && m != DVec3::ZERO {
                     sum.least_cosine = sum.least_cosine.min(n.dot(m));

@@ -98,7 +98,8 @@ impl Problem {
 
     /// As the diagnostic that all stages share.
     pub fn into_issue(self) -> Issue {
-        Issue::new(Severity::Error, self.source, self.issue)
+        let severity = if self.issue.is_as_in_file() { Severity::Warning } else { Severity::Error };
+        Issue::new(severity, self.source, self.issue)
     }
 }
 

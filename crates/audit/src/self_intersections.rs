@@ -39,9 +39,14 @@ const MOST_PLACES: usize = 16;
 
 /// Comparisons of facets in one shell: about a second, and far more than any sound solid needs. Where facets
 /// lie on each other by the thousand, as in a face that runs over itself, more would take minutes. Each pair
-/// of faces has an equal share, and at least [`LEAST_TESTS`], so that no order decides what is found.
+/// of faces has an equal share, and at least [`LEAST_TESTS`] and [`TESTS_PER_FACET`], so that no order decides
+/// what is found.
 const MOST_TESTS: usize = 4_000_000;
 const LEAST_TESTS: usize = 2_000;
+
+/// Comparisons of each facet of a pair of faces that are always made, so that the time grows with the mesh and
+/// not with its square. Facets of sound faces have a few dozen others near them.
+const TESTS_PER_FACET: usize = 256;
 
 /// The facets of one face of a shell.
 struct FacetsOfFace {
@@ -101,7 +106,8 @@ fn crossings<'f>(part: &Part, mesh: &PartMesh, all: &'f [FacetsOfFace]) -> Vec<C
     let cuts = |&(i, j): &(u32, u32)| {
         let (a, b) = (&all[i as usize], &all[j as usize]);
         let (a, b) = if a.face <= b.face { (a, b) } else { (b, a) };
-        let mut cuts = Cuts { facets: Vec::new(), left: most };
+        let facets = a.facets.len() + if i == j { 0 } else { b.facets.len() };
+        let mut cuts = Cuts { facets: Vec::new(), left: most.max(TESTS_PER_FACET * facets) };
         if i == j {
             a.cuts_of_its_own(&mut cuts)
         } else {

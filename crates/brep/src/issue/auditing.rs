@@ -253,6 +253,12 @@ pub enum PolylineDefect {
 }
 
 impl AuditIssue {
+    /// True where the mesh is as the model in the file is, which has the fault itself. No finer mesh would be
+    /// without it, and nothing of the shape is missing: it is a warning.
+    pub fn is_as_in_file(&self) -> bool {
+        matches!(self, Self::SelfIntersections { face_pairs, in_file, .. } if face_pairs == in_file)
+    }
+
     /// A stable name for programs to match.
     pub fn code(&self) -> &'static str {
         match self {
@@ -489,6 +495,19 @@ impl fmt::Display for InFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_crossings_that_are_all_in_the_file_are_as_in_the_file() {
+        let crossing = |in_file| AuditIssue::SelfIntersections {
+            triangle_pairs: 9,
+            face_pairs: 2,
+            in_file,
+            faces: [Source::default(); 2],
+        };
+        assert!(crossing(2).is_as_in_file());
+        assert!(!crossing(1).is_as_in_file());
+        assert!(!AuditIssue::DegenerateTriangles { triangles: 2 }.is_as_in_file());
+    }
 
     #[test]
     fn sentences_have_singular_and_plural() {
