@@ -200,6 +200,21 @@ fn unite(parent: &mut [u32], a: u32, b: u32) {
     parent[a.max(b) as usize] = a.min(b);
 }
 
+/// Per vertex of a pair, the vertices that a triangle joins it to: merging them would make the triangle
+/// vanish.
+pub(crate) fn neighbours(triangles: &[[u32; 3]], pairs: &[(f64, u32, u32)], count: usize) -> Vec<Vec<u32>> {
+    let mut paired = vec![false; count];
+    pairs.iter().for_each(|p| (paired[p.1 as usize], paired[p.2 as usize]) = (true, true));
+    let mut apart = vec![Vec::new(); count];
+    for side in sorted_sides(triangles).chunk_by(|a, b| a.edge == b.edge).map(|g| g[0].edge) {
+        if paired[side[0] as usize] && paired[side[1] as usize] {
+            apart[side[0] as usize].push(side[1]);
+            apart[side[1] as usize].push(side[0]);
+        }
+    }
+    apart
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! New vertices split their triangles; vertices of one site move to their middle and become one.
 
-use super::boundary::{Boundaries, sorted_sides};
+use super::boundary::{Boundaries, neighbours};
 use super::closest::Place;
 use super::sites::{Refused, Sites};
 use super::{MeshSewReport, SewnMesh};
@@ -83,21 +83,6 @@ pub(crate) fn join(
         .count();
     let shells = vec![0; merged.len()];
     Joined { mesh: SewnMesh { positions, triangles: merged, sources, shells }, refused }
-}
-
-/// Per vertex of a pair, the vertices that a triangle joins it to: merging them would make the triangle
-/// vanish.
-pub(crate) fn neighbours(triangles: &[[u32; 3]], pairs: &[(f64, u32, u32)], count: usize) -> Vec<Vec<u32>> {
-    let mut paired = vec![false; count];
-    pairs.iter().for_each(|p| (paired[p.1 as usize], paired[p.2 as usize]) = (true, true));
-    let mut apart = vec![Vec::new(); count];
-    for side in sorted_sides(triangles).chunk_by(|a, b| a.edge == b.edge).map(|g| g[0].edge) {
-        if paired[side[0] as usize] && paired[side[1] as usize] {
-            apart[side[0] as usize].push(side[1]);
-            apart[side[1] as usize].push(side[0]);
-        }
-    }
-    apart
 }
 
 impl<'a> Nodes<'a> {

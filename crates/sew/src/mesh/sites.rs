@@ -8,9 +8,8 @@
 //! 2. Every border at a site that has no vertex there gets one, at the place that corresponds, or at the
 //!    nearest one: that of the common reparametrisation of all of them.
 
-use super::boundary::Boundaries;
+use super::boundary::{Boundaries, neighbours};
 use super::closest::{Edges, Place, between, near_places};
-use super::join::neighbours;
 use super::track::Joints;
 use crate::cluster::{Clusters, Corner, cluster_pairs};
 use chordal_nurbs::{Box3, BoxTree};
