@@ -119,8 +119,8 @@ impl MeshOptions {
         self
     }
 
-    /// Processor time after which a face or an edge is reported as failed; `None` is no limit. Default: 3 seconds, with
-    /// a fill method or an edge splitter 60. The time is that of an ordinary core ([`WorkLimits`]).
+    /// Processor time after which a face or an edge is reported as failed; `None` is no limit.
+    /// Default: 4 seconds, with a fill method or an edge splitter 60. The time is that of an ordinary core ([`WorkLimits`]).
     pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {
         self.limits.face_timeout = Some(timeout);
         self

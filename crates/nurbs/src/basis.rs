@@ -110,7 +110,7 @@ impl<const R: usize> Basis<R> {
         let t = t.max(knots[degree]).min(knots[knots.len() - degree - 1]);
         let span = find_span(degree, knots, t);
         let width = degree + 1;
-        work::count((width * width) as u64);
+        work::count(work::products(width * width));
         let mut basis =
             Self { first: span - degree, width, stack: [[0.0; STACK_WIDTH]; R], heap: Vec::new() };
         let window = &knots[span + 1 - degree..=span + degree];
@@ -127,7 +127,7 @@ impl<const R: usize> Basis<R> {
     /// The Bernstein polynomials of this degree at `t`, which is not clamped.
     pub fn bernstein(degree: usize, t: f64) -> Self {
         let width = degree + 1;
-        work::count((width * width) as u64);
+        work::count(work::products(width * width));
         let mut basis = Self { first: 0, width, stack: [[0.0; STACK_WIDTH]; R], heap: Vec::new() };
         if width <= STACK_WIDTH {
             let window: [f64; 2 * STACK_WIDTH] = std::array::from_fn(|i| f64::from(i >= degree));

@@ -19,7 +19,7 @@ fn blend<T: Vector>(x: T, y: T, alpha: f64) -> T {
 /// triangle: those above become `b`.
 pub(crate) fn span_to_bezier<T: Vector>(row: &mut [T], knots: &[f64], a: f64, b: f64) {
     let p = row.len() - 1;
-    work::count((2 * row.len() * row.len()) as u64);
+    work::count(work::products(2 * row.len() * row.len()));
     for r in 1..=p {
         for j in 0..=p - r {
             let (low, high) = (knots[j + r - 1], knots[j + p]);
@@ -38,7 +38,7 @@ pub(crate) fn span_to_bezier<T: Vector>(row: &mut [T], knots: &[f64], a: f64, b:
 /// Restricts a Bézier row over 0..=1 to `a..b`; backwards where `a > b`.
 pub(crate) fn restrict<T: Vector>(row: &mut [T], a: f64, b: f64) {
     let p = row.len() - 1;
-    work::count((2 * row.len() * row.len()) as u64);
+    work::count(work::products(2 * row.len() * row.len()));
     let (low, high) = (a.min(b), a.max(b));
     for r in 1..=p {
         for j in 0..=p - r {

@@ -17,7 +17,7 @@ pub(crate) fn derivatives<const R: usize>(
     points: &[DVec3],
     weights: Option<&[f64]>,
 ) -> [[DVec3; R]; R] {
-    work::count((bu.row(0).len() * bv.row(0).len()) as u64);
+    work::count(work::products(bu.row(0).len() * bv.row(0).len()));
     let origin = points[bu.first * stride + bv.first];
     let mut jet = match weights {
         None => sum(bu, bv, stride, |k| points[k] - origin),

@@ -28,6 +28,13 @@ pub fn count(units: u64) {
     DONE.set(DONE.get().wrapping_add(units));
 }
 
+/// The units of so many products in a row: the processor takes several at once, and half of a square of basis
+/// functions is zero. Measured on faces of degree 100.
+#[inline]
+pub(crate) const fn products(number: usize) -> u64 {
+    (number as u64 * 2).div_ceil(5)
+}
+
 /// What this thread has done so far. The difference of two calls is the work between them.
 #[inline]
 pub fn done() -> u64 {

@@ -151,11 +151,12 @@ fn what_is_wrong_is_said() {
 
 #[test]
 fn only_obj_is_taken_for_it() {
-    for text in ["hello world\n", "v 1 2 3\nsolid\n", "g a\n", "# v 0 0 0\n", "solid a\nfacet normal 0 0 1\n"]
-    {
+    for text in ["hello world\n", "v 1 2 3\nsolid\n", "g a\n", "# v 0 0 0\n"] {
         let said = read_bytes(text.as_bytes(), "part").expect_err("no OBJ").to_string();
         assert!(said.contains("unrecognised file format"), "{text}: {said}");
     }
+    let said = read_bytes(b"solid a\nfacet normal 0 0 1\n", "part").expect_err("no OBJ").to_string();
+    assert!(said.contains("a triangle mesh (STL) is no CAD model"), "{said}");
 }
 
 #[test]

@@ -52,7 +52,7 @@ pub struct AccuracyArgs {
     /// Number of threads [default: one per core]. The mesh is the same for any number.
     #[arg(long, value_name = "N", value_parser = parse_jobs, allow_hyphen_values = true)]
     pub jobs: Option<usize>,
-    /// Limit of processor time per face and per edge in seconds of an ordinary core, 0 for none [default: 3; 60 with a
+    /// Limit of processor time per face and per edge in seconds of an ordinary core, 0 for none [default: 4; 60 with a
     /// named strategy or edge method].
     #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
     pub face_timeout: Option<TimeoutArg>,
