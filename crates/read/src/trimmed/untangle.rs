@@ -86,7 +86,11 @@ fn rebuilt(chains: &[Chain], scale: &Scale) -> Option<(Vec<Chain>, bool, usize)>
     }
     let ends: Vec<[u32; 2]> = close(&cut, &mut nodes);
     let visits = nodes.visits(&ends);
-    if met.crossings == 0 && met.touches == 0 && visits.iter().all(|&n| n <= 1) && are_told_apart(chains) {
+    if met.crossings == 0
+        && met.touches == 0
+        && visits.iter().all(|&n| n <= 1)
+        && are_told_apart(chains, scale)
+    {
         return None;
     }
     let segments: usize = flats.iter().map(|(_, flat)| flat.points.len()).sum();
@@ -105,10 +109,23 @@ fn rebuilt(chains: &[Chain], scale: &Scale) -> Option<(Vec<Chain>, bool, usize)>
     Some((new, whole, met.crossings + met.touches))
 }
 
-/// True where loops that meet nowhere cannot lie in each other with the same role.
-fn are_told_apart(chains: &[Chain]) -> bool {
-    let count = |role: Role| chains.iter().filter(|c| c.role == role).count();
-    count(Role::Outer) <= 1 && count(Role::Hole) <= 1
+/// True where loops that meet nowhere cannot lie in each other with the same role, nor an outer loop in a hole.
+fn are_told_apart(chains: &[Chain], scale: &Scale) -> bool {
+    let of = |role: Role| -> Vec<&Chain> { chains.iter().filter(|c| c.role == role).collect() };
+    match (&of(Role::Outer)[..], &of(Role::Hole)[..]) {
+        ([] | [_], []) | ([], [_]) => true,
+        ([outer], [hole]) => {
+            let [outer, hole] = [outer, hole].map(|chain| bounds(&chain.polygon(scale)));
+            !(hole[0].cmple(outer[0]).all() && outer[1].cmple(hole[1]).all())
+        }
+        _ => false,
+    }
+}
+
+/// The least and the largest coordinates.
+fn bounds(points: &[DVec2]) -> [DVec2; 2] {
+    let all = || points.iter().copied();
+    [all().fold(DVec2::INFINITY, DVec2::min), all().fold(DVec2::NEG_INFINITY, DVec2::max)]
 }
 
 /// Part of a piece between two places where it meets others.

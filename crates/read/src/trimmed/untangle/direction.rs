@@ -7,8 +7,13 @@
 use super::super::chain::Chain;
 use super::super::polygon::{area, contains};
 use super::super::{Role, Scale};
+use super::bounds;
 use crate::Winding;
 use chordal_nurbs::DVec2;
+
+/// A loop whose signed area is not more than this share of the area that all loops lie in runs neither way: it goes
+/// to and fro, or its lobes cancel out.
+const NO_DIRECTION: f64 = 1e-9;
 
 /// The role of each chain: by its direction where the chains run both ways and their nesting does not contradict,
 /// else as it is.
@@ -19,6 +24,9 @@ pub(super) fn roles(chains: &[Chain], scale: &Scale) -> Vec<Role> {
     }
     let polygons: Vec<Vec<DVec2>> = chains.iter().map(|chain| chain.polygon(scale)).collect();
     let areas: Vec<f64> = polygons.iter().map(|polygon| area(polygon)).collect();
+    if areas.iter().any(|a| a.abs() <= NO_DIRECTION * extent(&polygons)) {
+        return given;
+    }
     let largest = areas.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
     let is_outer: Vec<bool> = areas.iter().map(|a| a * largest > 0.0).collect();
     let is_contradicted = |i: usize| {
@@ -38,6 +46,12 @@ pub(super) fn roles(chains: &[Chain], scale: &Scale) -> Vec<Role> {
         return given;
     }
     is_outer.into_iter().map(|outer| if outer { Role::Outer } else { Role::Hole }).collect()
+}
+
+/// The area of the box of all polygons.
+fn extent(polygons: &[Vec<DVec2>]) -> f64 {
+    let [low, high] = bounds(&polygons.concat());
+    (high - low).element_product()
 }
 
 /// True where sides of two polygons cross.

@@ -99,6 +99,25 @@ fn two_loops_that_cross() {
 }
 
 #[test]
+fn loops_that_run_neither_way_are_no_holes() {
+    let to_and_fro = [(0.1, 0.1), (0.1, 0.1), (0.1, 0.7)];
+    near(area(&[polygon(&A, ODD), polygon(&to_and_fro, ODD)]), 0.48);
+    // The lobes cancel out; the other loop crosses one of them and has no area.
+    near(area(&[polygon(&EIGHT, ODD), polygon(&[(0.0, 0.2), (0.5, 0.2)], ODD)]), 0.32);
+}
+
+#[test]
+fn an_outer_loop_within_a_hole_leaves_nothing() {
+    near(
+        area(&[
+            polygon(&B, Role::Outer),
+            polygon(&[(0.4, 0.2), (0.95, 0.2), (0.95, 0.7), (0.4, 0.7)], Role::Hole),
+        ]),
+        0.0,
+    );
+}
+
+#[test]
 fn a_hole_that_shares_a_side_or_a_corner_with_the_outer_loop() {
     let side = [(0.3, 0.1), (0.3, 0.4), (0.5, 0.4), (0.5, 0.1)];
     near(area(&[polygon(&A, Role::Outer), polygon(&side, Role::Hole)]), 0.48 - 0.06);
