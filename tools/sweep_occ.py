@@ -21,6 +21,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NoReturn
 
+if __name__ == "__main__" and {"-h", "--help"} & set(sys.argv[1:]):
+    # Before OpenCASCADE, which may not be installed.
+    print(__doc__)
+    sys.exit(0)
+
 from occ_reading import StepFile, explore_faces
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Builder, BRep_Tool
