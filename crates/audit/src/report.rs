@@ -167,6 +167,8 @@ pub struct FaceCrossing {
     /// The faces themselves cut each other in the file, or their edges are further off them than they are off
     /// each other: no finer mesh would part them.
     pub in_file: bool,
+    /// The faces themselves cut each other in the file.
+    pub faces_cross: bool,
 }
 
 /// Two facets of a closed shell that cut each other.

@@ -67,11 +67,15 @@ struct Crossing<'f> {
 /// The pairs of faces of a shell whose facets cut each other, in the order of the faces.
 pub(crate) fn self_intersections(part: &Part, mesh: &PartMesh, faces: &[FaceId]) -> Vec<FaceCrossing> {
     let all = facets_of_faces(mesh, faces);
-    let describe = |crossing: &Crossing<'_>| FaceCrossing {
-        faces: crossing.faces.map(|f| f.face),
-        facet_pairs: crossing.facets.len(),
-        in_file: crossing.in_file(part, mesh) != InFile::Apart,
-        is_complete: crossing.is_complete,
+    let describe = |crossing: &Crossing<'_>| {
+        let in_file = crossing.in_file(part, mesh);
+        FaceCrossing {
+            faces: crossing.faces.map(|f| f.face),
+            facet_pairs: crossing.facets.len(),
+            in_file: in_file != InFile::Apart,
+            faces_cross: in_file == InFile::Crossing,
+            is_complete: crossing.is_complete,
+        }
     };
     crossings(part, mesh, &all).par_iter().map(describe).collect()
 }

@@ -62,6 +62,8 @@ pub enum AuditIssue {
         /// How many of these pairs of faces cut each other in the file, or meet at edges that are further off
         /// the faces than the faces are off each other. The facets of the others are only too coarse.
         in_file: usize,
+        /// How many of these pairs of faces cut each other in the file themselves.
+        faces_cross: usize,
         /// The pair of faces with the most pairs of triangles; twice the same where a face cuts itself.
         faces: [Source; 2],
     },
@@ -252,11 +254,15 @@ pub enum PolylineDefect {
     },
 }
 
+/// Why facets cut each other that no finer mesh would part.
+const CAUSE_IN_FILE: &str = "the exact faces cross in the file, or edges are looser there than the faces are apart";
+
 impl AuditIssue {
-    /// True where the mesh is as the model in the file is, which has the fault itself. No finer mesh would be
-    /// without it, and nothing of the shape is missing: it is a warning.
+    /// True where the mesh is as the model in the file is, which has the fault itself: all faces that it names
+    /// cut each other in the file. No finer mesh would be without it, and nothing of the shape is missing: it is
+    /// a warning.
     pub fn is_as_in_file(&self) -> bool {
-        matches!(self, Self::SelfIntersections { face_pairs, in_file, .. } if face_pairs == in_file)
+        matches!(self, Self::SelfIntersections { face_pairs, faces_cross, .. } if face_pairs == faces_cross)
     }
 
     /// A stable name for programs to match.
@@ -327,7 +333,7 @@ impl fmt::Display for AuditIssue {
             AuditIssue::InsideOut { volume } => {
                 write!(f, "the shell is inside out: its volume is {} mm³", number(*volume, 4))
             }
-            AuditIssue::SelfIntersections { triangle_pairs, face_pairs, in_file, faces: [a, b] } => {
+            AuditIssue::SelfIntersections { triangle_pairs, face_pairs, in_file, faces_cross, faces: [a, b] } => {
                 let triangles = count(*triangle_pairs, "pair of triangles", "pairs of triangles");
                 let verb = if *triangle_pairs == 1 { "cuts" } else { "cut" };
                 write!(f, "{triangles} of the shell {verb} each other, ")?;
@@ -337,18 +343,17 @@ impl fmt::Display for AuditIssue {
                     (true, n) => write!(f, "in {n} pairs of faces, most within face {a}"),
                     (false, n) => write!(f, "in {n} pairs of faces, most of {a} and {b}"),
                 }?;
+                if faces_cross == face_pairs {
+                    return write!(f, "; the exact faces cross in the file");
+                }
                 match (*in_file, face_pairs - in_file) {
-                    (_, 0) => write!(f, "; the exact faces or their edges cross in the file"),
+                    (_, 0) => write!(f, "; {CAUSE_IN_FILE}"),
                     (0, _) => write!(
                         f,
                         "; no crossing of the exact faces was found, a finer tolerance may part them"
                     ),
-                    (1, _) => {
-                        write!(f, "; in one of these pairs the exact faces or their edges cross in the file")
-                    }
-                    (n, _) => {
-                        write!(f, "; in {n} of these pairs the exact faces or their edges cross in the file")
-                    }
+                    (1, _) => write!(f, "; in one of these pairs {CAUSE_IN_FILE}"),
+                    (n, _) => write!(f, "; in {n} of these pairs {CAUSE_IN_FILE}"),
                 }
             }
             AuditIssue::TooManyFacetsMeet { face_pairs, faces: [a, b] } => {
@@ -497,15 +502,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_crossings_that_are_all_in_the_file_are_as_in_the_file() {
-        let crossing = |in_file| AuditIssue::SelfIntersections {
+    fn only_crossings_of_faces_that_all_cross_in_the_file_are_as_in_the_file() {
+        let crossing = |faces_cross| AuditIssue::SelfIntersections {
             triangle_pairs: 9,
             face_pairs: 2,
-            in_file,
+            in_file: 2,
+            faces_cross,
             faces: [Source::default(); 2],
         };
         assert!(crossing(2).is_as_in_file());
-        assert!(!crossing(1).is_as_in_file());
+        assert!(!crossing(1).is_as_in_file(), "loose edges are no crossing of faces");
         assert!(!AuditIssue::DegenerateTriangles { triangles: 2 }.is_as_in_file());
     }
 
