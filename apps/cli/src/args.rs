@@ -19,8 +19,8 @@ use clap::{Parser, Subcommand};
 ///
 /// `chordal part.step` is short for `chordal mesh part.step`.
 ///
-/// Exit codes: 0, done without problems; 1, done, with problems (standard error and --report list them); 2, nothing was
-/// written. Results go to standard output, messages to standard error.
+/// Exit codes: 0, done without problems; 1, done, with problems (standard error and --report list them); 2,
+/// nothing was written. Results go to standard output, messages to standard error.
 #[derive(Debug, Parser)]
 #[command(name = "chordal", version, arg_required_else_help = true)]
 pub struct Cli {
@@ -32,8 +32,8 @@ pub struct Cli {
 pub enum Command {
     /// Mesh CAD files.
     ///
-    /// Reads STEP, IGES, BREP, 3DM, Open Inventor, VRML, X3D, free-form OBJ and JSON; writes STL, PLY, OBJ, GLB, glTF and
-    /// 3MF.
+    /// Reads STEP, IGES, BREP, 3DM, Open Inventor, VRML, X3D, free-form OBJ and JSON; writes STL, PLY, OBJ,
+    /// GLB, glTF and 3MF.
     Mesh(MeshArgs),
     /// Show the contents of a CAD file: assembly tree, units, faces by kind, gaps, problems.
     Info(InfoArgs),
@@ -47,8 +47,8 @@ pub enum Command {
     Convert(ConvertArgs),
     /// Write the smallest piece of a model that shows the problem of a face, to be sent with a report.
     ///
-    /// The piece has no names and nothing of the file's header: the surface, loops and edges of the face, and those
-    /// of its neighbours where the problem needs them. It is meshed again before it is written.
+    /// The piece has no names and nothing of the file's header: the surface, loops and edges of the face, and
+    /// those of its neighbours where the problem needs them. It is meshed again before it is written.
     Repro(ReproArgs),
     /// Draw a picture of a model, as PNG.
     ///

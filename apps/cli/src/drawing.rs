@@ -1,6 +1,7 @@
 //! Faces in their planes of parameters, as SVG: what a subdivision and its triangles look like.
 //!
-//! Cells are grey, triangles thin, the boundary is bold. Each direction is stretched to the face's own extent.
+//! Cells are grey, triangles thin, the boundary is bold. Each direction is stretched to the face's own
+//! extent.
 
 use chordal::Meshed;
 use chordal::math::DVec2;

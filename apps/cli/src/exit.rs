@@ -41,8 +41,8 @@ pub fn print(data: &str) {
     print_bytes(data.as_bytes());
 }
 
-/// Bytes on standard output; a reader that has gone away is no error. Any other failure is told, and the program ends
-/// with 1 at least.
+/// Bytes on standard output; a reader that has gone away is no error. Any other failure is told, and the
+/// program ends with 1 at least.
 pub fn print_bytes(data: &[u8]) {
     if let Err(error) = try_print(data) {
         RESULTS_ARE_LOST.store(true, Ordering::Relaxed);

@@ -31,8 +31,8 @@ impl Input {
     }
 }
 
-/// The inputs that arguments stand for: a folder stands for the CAD files in it, at any depth, in the order of their
-/// names.
+/// The inputs that arguments stand for: a folder stands for the CAD files in it, at any depth, in the order
+/// of their names.
 ///
 /// # Errors
 /// One sentence where a folder cannot be read or has no CAD file, or where standard input is named twice.

@@ -104,7 +104,8 @@ fn is_input(argument: &OsStr) -> bool {
     argument != "help" && !is_subcommand && (argument == "-" || is_cad() || Path::new(argument).exists())
 }
 
-/// Help and version as they are; of an error the first paragraph, which is the sentence, and the hint behind it.
+/// Help and version as they are; of an error the first paragraph, which is the sentence, and the hint behind
+/// it.
 fn usage(error: &clap::Error) -> Exit {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {

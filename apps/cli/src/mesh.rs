@@ -213,7 +213,8 @@ fn check_report_path(args: &MeshArgs) -> Result<(), String> {
     }
 }
 
-/// The first Ctrl-C cancels at the next face, the second ends the program at once; neither leaves a half-written file.
+/// The first Ctrl-C cancels at the next face, the second ends the program at once; neither leaves a
+/// half-written file.
 fn stop_on_ctrl_c(cancel: &Cancel) {
     let cancel = cancel.clone();
     let stop = move || {

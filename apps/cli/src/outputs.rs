@@ -31,12 +31,12 @@ pub struct Outputs {
 
 /// Plans one output per input.
 ///
-/// Without `-o` a mesh lies beside its input, that of standard input goes to standard output. Meshes of one name in one
-/// folder get `name`, `name-2`, `name-3` …, in the order of the inputs.
+/// Without `-o` a mesh lies beside its input, that of standard input goes to standard output. Meshes of one
+/// name in one folder get `name`, `name-2`, `name-3` …, in the order of the inputs.
 ///
 /// # Errors
-/// One sentence where the outputs cannot be: several inputs for one file, an extension that names no format, a folder that
-/// is missing, an output that is one of the inputs.
+/// One sentence where the outputs cannot be: several inputs for one file, an extension that names no format,
+/// a folder that is missing, an output that is one of the inputs.
 pub fn plan(args: &MeshArgs, inputs: &[Input]) -> Result<Outputs, String> {
     let mut made = None;
     let (targets, formats) = match &args.output {

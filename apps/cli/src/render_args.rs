@@ -16,7 +16,8 @@ pub struct RenderArgs {
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x960", value_parser = parse_size)]
     pub size: SizeArg,
-    /// iso, top, bottom, front, back, left, right, or the places of the eye and of what it looks at, x,y,z,x,y,z in mm.
+    /// iso, top, bottom, front, back, left, right, or the places of the eye and of what it looks at,
+    /// x,y,z,x,y,z in mm.
     #[arg(long, value_name = "VIEW", default_value = "iso", allow_hyphen_values = true)]
     pub camera: String,
     #[arg(long, value_enum, default_value = "orthographic")]
@@ -46,7 +47,8 @@ pub struct RenderArgs {
     /// Cut away what lies where x·X + y·Y + z·Z > d, mm: X,Y,Z,d.
     #[arg(long, value_name = "X,Y,Z,d", allow_hyphen_values = true)]
     pub section: Option<String>,
-    /// Largest distance between the triangles drawn and the exact surfaces: a length, or a percentage of the model's diagonal.
+    /// Largest distance between the triangles drawn and the exact surfaces: a length, or a percentage of the
+    /// model's diagonal.
     #[arg(long, value_name = "LENGTH|%", default_value = "0.03%", allow_hyphen_values = true)]
     pub tolerance: Tolerance,
     /// Which device draws.
@@ -117,7 +119,8 @@ pub enum ProjectionArg {
 pub enum ModeArg {
     /// The triangles of the mesh.
     Mesh,
-    /// The exact surfaces, evaluated for the view to half a pixel and trimmed at every sample (shaded and edges).
+    /// The exact surfaces, evaluated for the view to half a pixel and trimmed at every sample (shaded and
+    /// edges).
     Nurbs,
 }
 

@@ -1,4 +1,5 @@
-//! Broken files: the right exit code, one sentence that names what is broken, no panic, no half-written output.
+//! Broken files: the right exit code, one sentence that names what is broken, no panic, no half-written
+//! output.
 
 mod common;
 

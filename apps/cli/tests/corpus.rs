@@ -1,12 +1,12 @@
-//! Every model of the corpus, whole job: complete, watertight where closed, within tolerance; the same bytes for any
-//! number of threads.
+//! Every model of the corpus, whole job: complete, watertight where closed, within tolerance; the same bytes
+//! for any number of threads.
 
 mod common;
 
 use common::{corpus, index, json, model, run};
 
-/// Models that are not meshed cleanly yet, and why. The report owns up to each (exit 1 or 2); one that becomes clean must be
-/// taken off this list.
+/// Models that are not meshed cleanly yet, and why. The report owns up to each (exit 1 or 2); one that
+/// becomes clean must be taken off this list.
 const KNOWN: &[(&str, &str)] = &[
     ("weight_negative", "nothing is proven about weights that are not positive"),
     ("offset_bspline", "nothing is proven about offsets of free surfaces"),

@@ -1,7 +1,8 @@
 //! Chordal as a WebAssembly module, without any binding generator.
 //!
-//! The host copies the bytes of a CAD file into memory that [`chordal_allocate`] gives, calls [`chordal_mesh`], and
-//! reads the result where [`chordal_result`] and [`chordal_result_length`] say. `mesh.mjs` does it in JavaScript.
+//! The host copies the bytes of a CAD file into memory that [`chordal_allocate`] gives, calls
+//! [`chordal_mesh`], and reads the result where [`chordal_result`] and [`chordal_result_length`] say.
+//! `mesh.mjs` does it in JavaScript.
 //!
 //! One module serves one call at a time: a WebAssembly module without threads has no others.
 #![expect(unsafe_code, reason = "exported symbols and a buffer that the host writes to")]
@@ -26,10 +27,11 @@ pub extern "C" fn chordal_allocate(length: usize) -> *mut u8 {
     })
 }
 
-/// Meshes the input and makes a PLY file (`format` 0) or a GLB file (`format` 1) of it, with a tolerance in millimetres.
+/// Meshes the input and makes a PLY file (`format` 0) or a GLB file (`format` 1) of it, with a tolerance in
+/// millimetres.
 ///
-/// Returns 0 where the mesh has no problem, 1 where its report has errors (the file is the result all the same), 2 where
-/// there is no mesh: then the result is one sentence.
+/// Returns 0 where the mesh has no problem, 1 where its report has errors (the file is the result all the
+/// same), 2 where there is no mesh: then the result is one sentence.
 #[unsafe(no_mangle)]
 pub extern "C" fn chordal_mesh(tolerance_mm: f64, format: u32) -> u32 {
     let format = if format == 1 { OutputFormat::Glb } else { OutputFormat::Ply };

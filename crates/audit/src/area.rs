@@ -19,9 +19,9 @@
 //! triangles must fill exactly: to within what the edges lie off the surface, seen in the chart, along the
 //! perimeter, and a share.
 //!
-//! Not checked where the chords alone do not show it: faces with a loop through a pole, where a curve does not
-//! determine one of the parameters; loops that wind round both directions at once; curves whose projection
-//! does not follow them.
+//! Not checked where the chords alone do not show it: faces with a loop through a pole, where a curve does
+//! not determine one of the parameters; loops that wind round both directions at once; curves whose
+//! projection does not follow them.
 
 use crate::boundary::Boundary;
 use crate::chart::Chart;

@@ -10,10 +10,10 @@
 //! On a closed surface the same is checked against the boundary moved by whole periods: a face that runs
 //! round more than once must not come back over itself.
 //!
-//! At a pole the chart has many points for one of the surface. A side that ends there runs along the parameter
-//! line through its other end, as the chord does seen from the axis; where the boundary passes through the
-//! pole, it goes on along the line of the chart that the pole is (see [`crate::fan`]). Sides that end
-//! at a side of the surface that is only short, and no point, are left out of the first check.
+//! At a pole the chart has many points for one of the surface. A side that ends there runs along the
+//! parameter line through its other end, as the chord does seen from the axis; where the boundary passes
+//! through the pole, it goes on along the line of the chart that the pole is (see [`crate::fan`]). Sides that
+//! end at a side of the surface that is only short, and no point, are left out of the first check.
 //!
 //! Signs of areas are exact; only against moved boundaries, whose coordinates are rounded, a crossing must be
 //! wider than rounding.

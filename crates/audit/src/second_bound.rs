@@ -1,8 +1,9 @@
-//! A second bound of facets, which shares no code with the first: the one that mesher and audit have in common
-//! may be wrong, and a fault in it would pass both.
+//! A second bound of facets, which shares no code with the first: the one that mesher and audit have in
+//! common may be wrong, and a fault in it would pass both.
 //!
-//! A share of the facets of each face, and the largest facet of each fourth face, are bounded again. The surface over a facet is
-//! divided until each piece is shown to lie within the error that is claimed for the face:
+//! A share of the facets of each face, and the largest facet of each fourth face, are bounded again. The
+//! surface over a facet is divided until each piece is shown to lie within the error that is claimed for the
+//! face:
 //!
 //! 1. the distance from a convex set is a convex function, so that over the plane piece through the images of
 //!    a triangle of parameters it is largest at a corner;
@@ -14,15 +15,15 @@
 //!      ╱╲  ╱╲          a corner farther off than the error: the bound is refuted
 //! ```
 //!
-//! The convex set is the facet. Where the face goes on across one of its sides, the image of the side may bend
-//! over the neighbour: the facet is then extended across the side, and the distance of the extension from the
-//! neighbour is added. Across a side at which the face ends the facet's plane goes on: what is there lies
-//! between chord and curve, which have a bound of their own.
+//! The convex set is the facet. Where the face goes on across one of its sides, the image of the side may
+//! bend over the neighbour: the facet is then extended across the side, and the distance of the extension
+//! from the neighbour is added. Across a side at which the face ends the facet's plane goes on: what is there
+//! lies between chord and curve, which have a bound of their own.
 //!
 //! Proven is that the surface over the facet's parameters is as near to the mesh as is claimed, to within
-//! [`SLACK`] and to a quarter of the tolerance; not the way back, nor what lies between the chord of an edge and its curve. A surface without a
-//! simple bound, and a facet that takes too many pieces, is looked at in points only, which can refute a bound
-//! and not confirm it.
+//! [`SLACK`] and to a quarter of the tolerance; not the way back, nor what lies between the chord of an edge
+//! and its curve. A surface without a simple bound, and a facet that takes too many pieces, is looked at in
+//! points only, which can refute a bound and not confirm it.
 
 use crate::bend::Bend;
 use crate::chart::Chart;

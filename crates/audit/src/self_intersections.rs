@@ -9,9 +9,9 @@
 //! 3. Trees over the boxes of their facets, built when first needed, give pairs of facets.
 //! 4. Exact predicates decide ([`crate::triangle_pair`]).
 //!
-//! Two facets of one face are compared only where the surface can come back to itself, and where no view shows
-//! that they lie one beside the other ([`crate::graph`]). The facets of a plane, cylinder, cone, sphere or
-//! plain torus lie so because their parameters do not overlap, which is checked in the chart.
+//! Two facets of one face are compared only where the surface can come back to itself, and where no view
+//! shows that they lie one beside the other ([`crate::graph`]). The facets of a plane, cylinder, cone, sphere
+//! or plain torus lie so because their parameters do not overlap, which is checked in the chart.
 //!
 //! Of each pair of faces it is then decided whether the faces themselves cut each other in the file
 //! ([`crate::exact_crossing`]), or only their facets do.
@@ -39,13 +39,13 @@ const MOST_PLACES: usize = 16;
 
 /// Comparisons of facets in one shell: about a second, and far more than any sound solid needs. Where facets
 /// lie on each other by the thousand, as in a face that runs over itself, more would take minutes. Each pair
-/// of faces has an equal share, and at least [`LEAST_TESTS`] and [`TESTS_PER_FACET`], so that no order decides
-/// what is found.
+/// of faces has an equal share, and at least [`LEAST_TESTS`] and [`TESTS_PER_FACET`], so that no order
+/// decides what is found.
 const MOST_TESTS: usize = 4_000_000;
 const LEAST_TESTS: usize = 2_000;
 
-/// Comparisons of each facet of a pair of faces that are always made, so that the time grows with the mesh and
-/// not with its square. Facets of sound faces have a few dozen others near them.
+/// Comparisons of each facet of a pair of faces that are always made, so that the time grows with the mesh
+/// and not with its square. Facets of sound faces have a few dozen others near them.
 const TESTS_PER_FACET: usize = 256;
 
 /// The facets of one face of a shell.
@@ -231,8 +231,8 @@ impl FacetsOfFace {
 }
 
 /// Calls `visit` for every facet of one face and facet of another whose boxes meet. Of neighbours only the
-/// facets in what their boxes have in common are looked at: in order along its longest side, or in trees where
-/// they are many.
+/// facets in what their boxes have in common are looked at: in order along its longest side, or in trees
+/// where they are many.
 fn pairs_between(a: &FacetsOfFace, b: &FacetsOfFace, visit: &mut impl FnMut(u32, u32)) {
     let common = Box3 { min: a.bounds.min.max(b.bounds.min), max: a.bounds.max.min(b.bounds.max) };
     let (mut of_a, mut of_b) = (a.within(&common), b.within(&common));

@@ -2,8 +2,8 @@
 //!
 //! The corners of the mesh lie on the surface at their parameters, and the boundary is the chords of the
 //! loops ([`crate::boundary`]); but where a surface is closed, or meets itself, a point has several places in
-//! the chart, and a chord may lead to the wrong one. Of each chord a b it is looked at whether the step in the
-//! chart leads there,
+//! the chart, and a chord may lead to the wrong one. Of each chord a b it is looked at whether the step in
+//! the chart leads there,
 //!
 //! ```text
 //!              by the derivatives at a

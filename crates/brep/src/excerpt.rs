@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 impl Part {
     /// These faces, in this order, with their edges and vertices, which they share as before.
     ///
-    /// Names, colours, layers, loose items and triangles of the file are gone; entity numbers and lines stay. All
-    /// faces are in one sheet, or in the shells and bodies of the part where no face is left out.
+    /// Names, colours, layers, loose items and triangles of the file are gone; entity numbers and lines stay.
+    /// All faces are in one sheet, or in the shells and bodies of the part where no face is left out.
     pub fn excerpt(&self, faces: &[FaceId]) -> Part {
         let mut part = Part { uncertainty: self.uncertainty, source: self.source, ..Part::default() };
         let mut copies = Island::default();
@@ -59,8 +59,8 @@ fn edges_of(face: &Face) -> impl Iterator<Item = EdgeId> + '_ {
 }
 
 impl Model {
-    /// A model of these faces of one part alone, placed by `world`; see [`Part::excerpt`]. Of the header, the first
-    /// word of the format and the unit stay.
+    /// A model of these faces of one part alone, placed by `world`; see [`Part::excerpt`]. Of the header, the
+    /// first word of the format and the unit stay.
     pub fn excerpt(&self, part: PartId, faces: &[FaceId], world: DAffine3) -> Model {
         let part = self.parts[part.index()].excerpt(faces);
         let source = part.source;

@@ -1,4 +1,5 @@
-//! Typed indices. Each is the position in the vector of the same name of its [`crate::Part`] or [`crate::Model`].
+//! Typed indices. Each is the position in the vector of the same name of its [`crate::Part`] or
+//! [`crate::Model`].
 
 macro_rules! id {
     ($($(#[$doc:meta])* $name:ident),* $(,)?) => {$(

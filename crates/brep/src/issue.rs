@@ -1,11 +1,12 @@
 //! One diagnostic type for the whole pipeline, from reader to report.
 //!
-//! Every stage that repairs, guesses, drops or rejects something records an [`Issue`]: a kind that code can match, a
-//! severity, and the entity of the file that it concerns. The sentence that people read is made here and nowhere
-//! else, so that wording, plurals and units are the same in every stage.
+//! Every stage that repairs, guesses, drops or rejects something records an [`Issue`]: a kind that code can
+//! match, a severity, and the entity of the file that it concerns. The sentence that people read is made here
+//! and nowhere else, so that wording, plurals and units are the same in every stage.
 //!
-//! Each stage has an enum of its own ([`ReadIssue`], [`MeshIssue`], [`AuditIssue`], [`ResultIssue`]) in a file of its
-//! own. The fields of a variant are values, never prepared text; they are serialised into the report as they are.
+//! Each stage has an enum of its own ([`ReadIssue`], [`MeshIssue`], [`AuditIssue`], [`ResultIssue`]) in a
+//! file of its own. The fields of a variant are values, never prepared text; they are serialised into the
+//! report as they are.
 
 mod auditing;
 mod meshing;

@@ -1,8 +1,9 @@
-//! The exact model: parts made of faces, faces trimmed by loops of coedges, edges shared by faces, parts placed in
-//! an assembly tree.
+//! The exact model: parts made of faces, faces trimmed by loops of coedges, edges shared by faces, parts
+//! placed in an assembly tree.
 //!
-//! Geometry of a part stays in the units of its file; every placement carries the scale to its parent, and the
-//! root nodes carry the scale to millimetres. So a walk down the tree ends in millimetres, whatever units are mixed.
+//! Geometry of a part stays in the units of its file; every placement carries the scale to its parent, and
+//! the root nodes carry the scale to millimetres. So a walk down the tree ends in millimetres, whatever units
+//! are mixed.
 
 #![deny(missing_docs)]
 

@@ -3,7 +3,8 @@
 use serde::Serialize;
 use std::fmt;
 
-/// An entity of the input file: its number (`#id`; 0 where the format has none) and its line (from 1; 0 unknown).
+/// An entity of the input file: its number (`#id`; 0 where the format has none) and its line (from 1; 0
+/// unknown).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub struct Source {
     /// The number of the entity; 0 where the format has none.

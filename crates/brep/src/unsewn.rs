@@ -11,10 +11,12 @@ impl Model {
 }
 
 impl Part {
-    /// The part with every face an island: it has edges and vertices of its own and shares none with another face.
+    /// The part with every face an island: it has edges and vertices of its own and shares none with another
+    /// face.
     ///
-    /// An edge that one face uses twice (a seam) stays one edge. Faces keep their order, shells and bodies; bodies
-    /// become face sets, and no shell claims to be closed. Edges and vertices that no face uses are gone.
+    /// An edge that one face uses twice (a seam) stays one edge. Faces keep their order, shells and bodies;
+    /// bodies become face sets, and no shell claims to be closed. Edges and vertices that no face uses are
+    /// gone.
     pub fn unsewn(&self) -> Part {
         let mut part = Part { vertices: Vec::new(), edges: Vec::new(), faces: Vec::new(), ..self.clone() };
         for face in &self.faces {

@@ -1,22 +1,23 @@
 //! The boundary of a region that winding numbers describe, from loops that cross.
 //!
-//! Purpose: loops that cross, touch or run over each other bound no region by themselves. Once they are cut at every
-//! place where they meet, each stretch between two such places has one winding number on its left and one on its
-//! right. The stretches with the region on exactly one side are its boundary.
+//! Purpose: loops that cross, touch or run over each other bound no region by themselves. Once they are cut
+//! at every place where they meet, each stretch between two such places has one winding number on its left
+//! and one on its right. The stretches with the region on exactly one side are its boundary.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 5.1 (a vertex at each crossing, then loops without crossings); the
-//! choice by winding numbers is that of OpenGL's tessellator.
+//! Source: Balázs, Guthe, Klein 2004, section 5.1 (a vertex at each crossing, then loops without crossings);
+//! the choice by winding numbers is that of OpenGL's tessellator.
 //!
-//! Notation: a *node* is a place where stretches meet, a [`Strand`] a stretch between two nodes that meets no other
-//! one in between.
+//! Notation: a *node* is a place where stretches meet, a [`Strand`] a stretch between two nodes that meets no
+//! other one in between.
 //!
 //! 1. The winding numbers beside the middle of every strand, by a ray.
-//! 2. Strands that have the region on both sides, or on neither, are left out. The others run with it on their left.
-//! 3. At each node an arriving strand goes on with the next one clockwise. So no two loops cross there, and two parts
-//!    of the region that only touch become two loops.
+//! 2. Strands that have the region on both sides, or on neither, are left out. The others run with it on
+//!    their left.
+//! 3. At each node an arriving strand goes on with the next one clockwise. So no two loops cross there, and
+//!    two parts of the region that only touch become two loops.
 //!
-//! Not guaranteed: strands that cross between their nodes may leave a node that no loop can be led through; then there
-//! is no result.
+//! Not guaranteed: strands that cross between their nodes may leave a node that no loop can be led through;
+//! then there is no result.
 
 use chordal_nurbs::{DVec2, orient};
 use std::cmp::Ordering;
@@ -99,7 +100,8 @@ fn beside(strands: &[Strand], reach: &[Reach], index: usize, loop_count: usize) 
     let longest = (0..strand.points.len() - 1).max_by(|&a, &b| length(a).total_cmp(&length(b))).unwrap_or(0);
     let (a, b) = (strand.points[longest], strand.points[longest + 1]);
     let middle = a.midpoint(b);
-    // The ray runs across the segment rather than along it. In swapped coordinates everything winds the other way.
+    // The ray runs across the segment rather than along it. In swapped coordinates everything winds the other
+    // way.
     let swapped = (b.x - a.x).abs() > (b.y - a.y).abs();
     let seen = |p: DVec2| if swapped { DVec2::new(p.y, p.x) } else { p };
     let sign = if swapped { -1 } else { 1 };

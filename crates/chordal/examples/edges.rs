@@ -1,4 +1,5 @@
-//! The edges of a model as polylines, and its faces with their kinds: what a viewer draws beside the triangles.
+//! The edges of a model as polylines, and its faces with their kinds: what a viewer draws beside the
+//! triangles.
 
 use chordal::{Error, MeshOptions, Mesher, Model, Tolerance};
 use std::path::Path;

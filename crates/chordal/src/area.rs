@@ -5,7 +5,8 @@ use glam::DVec3;
 
 /// The area of all triangles that were made of exact faces, as placed, in square millimetres.
 ///
-/// Facets are chords: the area of a curved surface is a little larger than that of facets with their corners on it.
+/// Facets are chords: the area of a curved surface is a little larger than that of facets with their corners
+/// on it.
 pub fn area(scene: &Scene) -> f64 {
     scene
         .placements()

@@ -35,9 +35,9 @@ pub(crate) struct AuditedShell {
     pub missing_faces: Vec<usize>,
 }
 
-/// Audits every part that is placed. What the audit proves of a face less tightly than the mesher takes the place of the
-/// mesher's own figure. A part whose facets cut each other although its faces do not is meshed again, finer
-/// there.
+/// Audits every part that is placed. What the audit proves of a face less tightly than the mesher takes the
+/// place of the mesher's own figure. A part whose facets cut each other although its faces do not is meshed
+/// again, finer there.
 pub(crate) fn audit_parts(
     model: &Model,
     resolved: &Resolved,
@@ -183,8 +183,8 @@ fn is_missing(meshed: &MeshedPart, face: usize) -> bool {
     !zero_area && !has_triangles(meshed, face)
 }
 
-/// The report states it elsewhere: it counts shells that are not watertight, and the mesher itself reports errors
-/// over the tolerance.
+/// The report states it elsewhere: it counts shells that are not watertight, and the mesher itself reports
+/// errors over the tolerance.
 fn is_reported(problem: &Problem, claims: &[Claim], options: &Options) -> bool {
     let reported = |f: u32| {
         claims.get(f as usize).is_some_and(|c| !(c.proven_error <= options.largest_tolerance()) || c.missing)

@@ -1,7 +1,7 @@
 //! Panics of the stages: a bug in Chordal, given to the caller as an error.
 //!
-//! The mesher itself turns the panic of a face into that face's failure; this catches what happens between the faces. On
-//! platforms that abort at a panic nothing is caught.
+//! The mesher itself turns the panic of a face into that face's failure; this catches what happens between
+//! the faces. On platforms that abort at a panic nothing is caught.
 
 use crate::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};

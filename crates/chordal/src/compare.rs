@@ -11,8 +11,8 @@ use chordal_tessellate::{Bound, Cancel, Stopwatch};
 
 pub use chordal_methods::compare::{COMPARE_SCHEMA, ComparedRow, Comparison, PhaseSeconds, StageCount, plot};
 
-/// Meshes the model once for every strategy and bound. The lower bound of triangles is that of the first row: it is a
-/// property of the model, up to rounding.
+/// Meshes the model once for every strategy and bound. The lower bound of triangles is that of the first row:
+/// it is a property of the model, up to rounding.
 ///
 /// # Errors
 /// Where the model cannot be read or the options make no sense for it.

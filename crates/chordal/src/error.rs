@@ -41,7 +41,8 @@ pub enum Error {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequestError {
-    /// The tolerance is finer than double-precision coordinates of this size can represent; lengths in millimetres.
+    /// The tolerance is finer than double-precision coordinates of this size can represent; lengths in
+    /// millimetres.
     #[error(
         "tolerance {} is below double precision for this model (minimum {})",
         length_mm(*.tolerance),

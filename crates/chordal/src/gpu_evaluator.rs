@@ -7,8 +7,8 @@ use chordal_nurbs::{BulkEvaluator, DVec2, DVec3, NurbsSurface, SurfaceJet};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Fewer points of one surface are not sent: a dispatch with its upload and its way back takes as long as the host needs for
-/// so many (docs/gpu.md, Figures).
+/// Fewer points of one surface are not sent: a dispatch with its upload and its way back takes as long as the
+/// host needs for so many (docs/gpu.md, Figures).
 const FEWEST: usize = 4096;
 
 /// A device with the kernels that the mesher needs.
@@ -26,7 +26,8 @@ impl GpuEvaluator {
     /// Opens a device.
     ///
     /// # Errors
-    /// As [`Gpu::open`]; [`GpuError::Lacks`] for one without double precision in shaders: positions of vertices need it.
+    /// As [`Gpu::open`]; [`GpuError::Lacks`] for one without double precision in shaders: positions of
+    /// vertices need it.
     pub fn open(choice: DeviceChoice) -> Result<Self, GpuError> {
         let gpu = Gpu::open(choice)?;
         let kernels = KernelRunner::new(&gpu, Variant::Bernstein, Search::Host)?;

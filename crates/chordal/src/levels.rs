@@ -1,7 +1,9 @@
-//! A chain of coarser meshes, each with half the triangles of the one before, by the decimator of the crate `meshopt`.
+//! A chain of coarser meshes, each with half the triangles of the one before, by the decimator of the crate
+//! `meshopt`.
 //!
-//! That crate is built from C++, so it is behind the feature `levels`. It collapses edges by quadric errors (Garland and
-//! Heckbert 1997) and keeps what is connected connected; borders that are open stay as they are. Its error is an estimate.
+//! That crate is built from C++, so it is behind the feature `levels`. It collapses edges by quadric errors
+//! (Garland and Heckbert 1997) and keeps what is connected connected; borders that are open stay as they are.
+//! Its error is an estimate.
 
 use chordal_sew::SewnMesh;
 
@@ -67,7 +69,8 @@ mod tests {
     use chordal_sew::{SewTolerance, sew_mesh};
     use glam::DVec3;
 
-    /// A sewn ball of two hemispheres: every level is closed, has about half the triangles, and keeps its shape.
+    /// A sewn ball of two hemispheres: every level is closed, has about half the triangles, and keeps its
+    /// shape.
     #[test]
     fn levels_of_a_closed_mesh_are_closed() {
         let (m, n) = (40_u32, 80_u32);

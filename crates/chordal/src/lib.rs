@@ -18,9 +18,9 @@
 //! # Ok::<(), chordal::Error>(())
 //! ```
 //!
-//! [`Model::from_bytes`] and [`Meshed::to_bytes`] do the same without a file. Nothing here needs a thread, a clock or a
-//! file system, so the crate also runs on `wasm32-unknown-unknown`. Work is shared among the threads of the current
-//! rayon pool; the result is the same bytes for any number of threads.
+//! [`Model::from_bytes`] and [`Meshed::to_bytes`] do the same without a file. Nothing here needs a thread, a
+//! clock or a file system, so the crate also runs on `wasm32-unknown-unknown`. Work is shared among the
+//! threads of the current rayon pool; the result is the same bytes for any number of threads.
 //!
 //! # Features
 //!
@@ -31,8 +31,8 @@
 //! | `methods` | no | published methods that fill faces and cut edges, by name, and their comparison |
 //! | `levels` | no | coarser levels of sewn meshes (needs a C++ compiler) |
 //!
-//! The crates of the pipeline can be used alone: [`nurbs`], [`brep`], [`read`], [`sew`], [`chart`], [`mod@tessellate`],
-//! [`audit`], [`mesh`], [`write`](mod@write), [`document`].
+//! The crates of the pipeline can be used alone: [`nurbs`], [`brep`], [`read`], [`sew`], [`chart`],
+//! [`mod@tessellate`], [`audit`], [`mesh`], [`write`](mod@write), [`document`].
 #![deny(missing_docs)]
 
 /// The README's example, compiled as a test of the documentation.

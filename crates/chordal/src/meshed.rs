@@ -164,8 +164,8 @@ impl Meshed {
         })
     }
 
-    /// Writes the mesh in the format of the extension: stl, ply, obj, glb, gltf or 3mf. The file is replaced only once the new
-    /// one is complete.
+    /// Writes the mesh in the format of the extension: stl, ply, obj, glb, gltf or 3mf. The file is replaced
+    /// only once the new one is complete.
     ///
     /// # Errors
     /// [`Error::Request`] where the extension is unknown or the file cannot be written.
@@ -184,7 +184,8 @@ impl Meshed {
         write_scene(&self.scene_for(options.format), path, &options).map_err(|source| failed(path, source))
     }
 
-    /// The bytes of a mesh file. An OBJ file with colours refers to a second file, see [`Meshed::to_bytes_with`].
+    /// The bytes of a mesh file. An OBJ file with colours refers to a second file, see
+    /// [`Meshed::to_bytes_with`].
     ///
     /// # Errors
     /// [`Error::Request`] where the format cannot hold the mesh.
@@ -275,8 +276,8 @@ impl<'a> MeshedFace<'a> {
         self.meshed.scene.parts[self.part].mesh.faces.get(self.face)
     }
 
-    /// The cells of its subdivision, where [`MeshOptions::with_cells_recorded`](crate::MeshOptions::with_cells_recorded)
-    /// is on.
+    /// The cells of its subdivision, where
+    /// [`MeshOptions::with_cells_recorded`](crate::MeshOptions::with_cells_recorded) is on.
     pub fn cells(&self) -> &'a [UvBox] {
         let of_face: Option<&FaceReport> = self.meshed.parts[self.part].faces.get(self.face);
         of_face.map_or(&[], |report| &report.cells)
@@ -297,7 +298,8 @@ struct Place {
 impl Place {
     fn new(placed: &PlacedPart, placement: usize) -> Self {
         let m = placed.world.matrix3;
-        // The cofactor matrix is det(m)·m⁻ᵀ: it needs no division, so a flattening placement is no special case.
+        // The cofactor matrix is det(m)·m⁻ᵀ: it needs no division, so a flattening placement is no special
+        // case.
         let cofactor =
             DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
         let mirrored = m.determinant() < 0.0;

@@ -5,8 +5,8 @@
 //!                 └──────────────── chordal_tessellate, once per part ──────────────────┘
 //! ```
 //!
-//! Parts run in parallel on the current rayon pool; the result is the same for any number of threads. Where the platform
-//! has no threads or no clock, everything runs on the calling thread and times are zero.
+//! Parts run in parallel on the current rayon pool; the result is the same for any number of threads. Where
+//! the platform has no threads or no clock, everything runs on the calling thread and times are zero.
 
 use crate::account::{Findings, Ledger, account};
 use crate::area::area;
@@ -50,7 +50,8 @@ impl Mesher {
         Self { options, listener: Listener::default() }
     }
 
-    /// Calls `call` with the phase and the fraction of it that is done, from any thread; [`ControlFlow::Break`] cancels.
+    /// Calls `call` with the phase and the fraction of it that is done, from any thread;
+    /// [`ControlFlow::Break`] cancels.
     pub fn with_progress(
         mut self,
         call: impl Fn(Phase, f64) -> ControlFlow<()> + Send + Sync + 'static,
@@ -73,9 +74,9 @@ impl Mesher {
     /// Meshes a model and audits the mesh.
     ///
     /// # Errors
-    /// [`Error::Request`] where the tolerance is below what the coordinates can represent, [`Error::File`] where no face
-    /// could be meshed or a coordinate is out of range, [`Error::Cancelled`], [`Error::Bug`]. A face that fails is no error: the report
-    /// lists it.
+    /// [`Error::Request`] where the tolerance is below what the coordinates can represent, [`Error::File`]
+    /// where no face could be meshed or a coordinate is out of range, [`Error::Cancelled`], [`Error::Bug`]. A
+    /// face that fails is no error: the report lists it.
     pub fn mesh(&self, model: &Model) -> Result<Meshed, Error> {
         guarded(|| self.run_stages(model))
     }

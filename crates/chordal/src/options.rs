@@ -64,8 +64,8 @@ macro_rules! mesher_options {
 }
 
 mesher_options! {
-    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians; `None` is no
-    /// limit. Default: 20 degrees.
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face, in radians; `None`
+    /// is no limit. Default: 20 degrees.
     with_angle(radians: Option<f64>);
     /// Longest mesh edge in millimetres; `None`, the default, is no limit.
     with_max_edge(millimetres: Option<f64>);
@@ -90,8 +90,8 @@ impl MeshOptions {
         self
     }
 
-    /// Largest distance between edges and their chords; `None`, the default, is the tolerance. Facets that touch an
-    /// edge may be as far off as the larger of the two.
+    /// Largest distance between edges and their chords; `None`, the default, is the tolerance. Facets that
+    /// touch an edge may be as far off as the larger of the two.
     pub fn with_boundary_tolerance(mut self, tolerance: Option<Tolerance>) -> Self {
         self.boundary_tolerance = tolerance;
         self
@@ -111,30 +111,31 @@ impl MeshOptions {
         self
     }
 
-    /// The format that the mesh will be written in. The rounding of a format with 32-bit coordinates (binary STL, GLB)
-    /// is kept back from the tolerance, so that the mesh **as written** keeps it. `None`, the default: nothing is kept
-    /// back.
+    /// The format that the mesh will be written in. The rounding of a format with 32-bit coordinates (binary
+    /// STL, GLB) is kept back from the tolerance, so that the mesh **as written** keeps it. `None`, the
+    /// default: nothing is kept back.
     pub fn with_output_format(mut self, format: Option<Format>) -> Self {
         self.output_format = format;
         self
     }
 
     /// Processor time after which a face or an edge is reported as failed; `None` is no limit.
-    /// Default: 4 seconds, with a fill method or an edge splitter 60. The time is that of an ordinary core ([`WorkLimits`]).
+    /// Default: 4 seconds, with a fill method or an edge splitter 60. The time is that of an ordinary core
+    /// ([`WorkLimits`]).
     pub fn with_face_timeout(mut self, timeout: Option<Duration>) -> Self {
         self.limits.face_timeout = Some(timeout);
         self
     }
 
-    /// Processor time that all faces of a file may take together, per megabyte of the file and at 0.1 %; `None` is no
-    /// limit. Default: the time of one face.
+    /// Processor time that all faces of a file may take together, per megabyte of the file and at 0.1 %;
+    /// `None` is no limit. Default: the time of one face.
     pub fn with_file_timeout(mut self, timeout: Option<Duration>) -> Self {
         self.limits.file_timeout = Some(timeout);
         self
     }
 
-    /// Memory in bytes that the triangles of a file may take, per megabyte of the file and at 0.1 %; `None` is no limit.
-    /// Default: a gigabyte.
+    /// Memory in bytes that the triangles of a file may take, per megabyte of the file and at 0.1 %; `None`
+    /// is no limit. Default: a gigabyte.
     pub fn with_memory(mut self, bytes: Option<u64>) -> Self {
         self.limits.memory = Some(bytes);
         self

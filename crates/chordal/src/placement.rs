@@ -9,8 +9,8 @@ use glam::{DAffine3, DMat3};
 pub struct PartUse {
     /// How often the part is placed.
     pub instances: usize,
-    /// The largest factor by which a placement stretches a length of the part on its way to millimetres; 1 where
-    /// the part is never placed.
+    /// The largest factor by which a placement stretches a length of the part on its way to millimetres; 1
+    /// where the part is never placed.
     pub scale: f64,
     /// To millimetres, in the order of the tree.
     pub worlds: Vec<DAffine3>,

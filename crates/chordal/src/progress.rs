@@ -105,8 +105,8 @@ impl<'a> FaceCounter<'a> {
 }
 
 impl PartCounter<'_> {
-    /// `done` faces of this part are finished by now, those that ran again counted again; calls may arrive out of
-    /// order.
+    /// `done` faces of this part are finished by now, those that ran again counted again; calls may arrive
+    /// out of order.
     pub fn done(&self, done: usize) {
         let done = done.min(self.faces);
         let before = self.of_part.fetch_max(done, Ordering::Relaxed);

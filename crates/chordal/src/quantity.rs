@@ -62,7 +62,8 @@ pub fn parse_length(text: &str) -> Result<f64, QuantityError> {
     positive(number * factor, text)
 }
 
-/// Reads an angle such as `20deg`, `20°` or `0.35rad`; a bare number is in degrees. `off`, and 180° or more, is no limit.
+/// Reads an angle such as `20deg`, `20°` or `0.35rad`; a bare number is in degrees. `off`, and 180° or more,
+/// is no limit.
 ///
 /// Returns radians.
 ///

@@ -61,7 +61,8 @@ impl ImageRenderer {
         self.gpu.name()
     }
 
-    /// Draws a mesh, or the exact model that it was made of. Styles that measure or show the mesh draw the mesh.
+    /// Draws a mesh, or the exact model that it was made of. Styles that measure or show the mesh draw the
+    /// mesh.
     ///
     /// # Errors
     /// Where the device fails or the model is too large for it.

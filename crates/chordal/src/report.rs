@@ -1,4 +1,5 @@
-//! The report: what was requested, what was done, what is proven, what went wrong. `docs/report.md` documents it.
+//! The report: what was requested, what was done, what is proven, what went wrong. `docs/report.md` documents
+//! it.
 //!
 //! Lengths are millimetres, angles degrees, times seconds. A value that is not known is `null`.
 
@@ -14,7 +15,8 @@ pub use sewing::{GapSurvey, OpenEntry, SewingEntry};
 use chordal_brep::{Severity, Source};
 use serde::{Deserialize, Serialize};
 
-/// The name and version of the report's schema. The number rises when a field changes its meaning or is removed.
+/// The name and version of the report's schema. The number rises when a field changes its meaning or is
+/// removed.
 pub const REPORT_SCHEMA: &str = "chordal-report/2";
 
 /// The report of one model.
@@ -33,23 +35,23 @@ pub struct Report {
     pub clean: bool,
     /// Every problem of every stage, in the order of the stages.
     pub problems: Vec<Problem>,
-    /// Largest proven two-sided distance between an exact face and its triangles **as written**, over the faces that
-    /// have a proof; without the gap. `null` where no face has a proof.
+    /// Largest proven two-sided distance between an exact face and its triangles **as written**, over the
+    /// faces that have a proof; without the gap. `null` where no face has a proof.
     pub proven_error: Option<f64>,
     /// Faces with triangles and without a proof; `proven_error` does not speak of them.
     pub unproven_faces: Vec<FaceName>,
-    /// Largest proven distance between an edge and its chords, which `options.boundary_tolerance` bounds; `null` where
-    /// it is not known of an edge.
+    /// Largest proven distance between an edge and its chords, which `options.boundary_tolerance` bounds;
+    /// `null` where it is not known of an edge.
     pub boundary_error: Option<f64>,
-    /// Largest distance between a mesh vertex and the exact surface of a face that uses it: the inaccuracy of the
-    /// file.
+    /// Largest distance between a mesh vertex and the exact surface of a face that uses it: the inaccuracy of
+    /// the file.
     pub max_edge_gap: f64,
     /// Whether the surface is closed; `null` where no face was meshed, so that nothing was examined.
     pub closedness: Option<Closedness>,
     /// Mesh edges with one triangle in shells that the file declares closed, as placed.
     pub open_edges: usize,
-    /// Mesh edges whose triangles do not pair up in opposite directions in shells that the file declares closed, as
-    /// placed.
+    /// Mesh edges whose triangles do not pair up in opposite directions in shells that the file declares
+    /// closed, as placed.
     pub inconsistent_edges: usize,
     /// Faces without triangles in shells that the file declares closed, as placed.
     pub missing_faces: usize,
@@ -106,7 +108,8 @@ pub struct InputReport {
     pub format: String,
     /// The file's unit of length.
     pub unit: String,
-    /// Diagonal of the tight axis-aligned box of the whole placed model; `null` unless the tolerance is a percentage.
+    /// Diagonal of the tight axis-aligned box of the whole placed model; `null` unless the tolerance is a
+    /// percentage.
     pub diagonal: Option<f64>,
 }
 
@@ -118,7 +121,8 @@ pub struct OptionsReport {
     pub tolerance: f64,
     /// As the caller wrote it ("0.1 %").
     pub tolerance_requested: String,
-    /// Largest distance between edges and their chords; equals `tolerance` unless the caller gave another one.
+    /// Largest distance between edges and their chords; equals `tolerance` unless the caller gave another
+    /// one.
     pub boundary_tolerance: f64,
     /// `null`: no limit.
     pub angle: Option<f64>,
@@ -202,7 +206,8 @@ pub struct PartEntry {
     pub entity: Option<String>,
     /// How often it is placed; a part that is never placed is not meshed.
     pub instances: usize,
-    /// The tolerance in the part's own units: the one of the model over the largest scale among its placements.
+    /// The tolerance in the part's own units: the one of the model over the largest scale among its
+    /// placements.
     pub tolerance: f64,
     /// Its faces.
     pub faces: usize,
@@ -282,8 +287,8 @@ pub struct OutputReport {
     pub rounding: f64,
 }
 
-/// Seconds per stage. Those of `trim`, `edges`, `faces` and `stitch` are summed over threads, the others are wall
-/// time. All are zero where the platform has no clock.
+/// Seconds per stage. Those of `trim`, `edges`, `faces` and `stitch` are summed over threads, the others are
+/// wall time. All are zero where the platform has no clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Seconds {
@@ -342,8 +347,8 @@ pub struct FaceEntry {
     pub status: FaceStatus,
     /// The requested strategy, `options.strategy`.
     pub strategy_requested: String,
-    /// The strategy that made its triangles: the requested one, or `default` where that gave up; `null` where it has
-    /// none.
+    /// The strategy that made its triangles: the requested one, or `default` where that gave up; `null` where
+    /// it has none.
     pub strategy: Option<String>,
     /// How many triangles it has.
     pub triangles: usize,
@@ -366,7 +371,8 @@ pub struct FaceEntry {
 pub struct StageEntry {
     /// Its name.
     pub name: String,
-    /// Faces for which it ran, each counted once however often it is placed; 0 for methods that work on edges.
+    /// Faces for which it ran, each counted once however often it is placed; 0 for methods that work on
+    /// edges.
     pub faces: usize,
     /// What it made in all of them.
     pub count: usize,

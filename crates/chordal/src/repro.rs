@@ -1,8 +1,9 @@
 //! The smallest piece of a model that shows the problem of one face, to be sent with a report of it.
 //!
-//! Pieces are tried from small to large: the face; the face with its neighbours, of which those are taken out again
-//! that the problem does not need; these with their neighbours; the whole part. A piece is written as JSON, read
-//! back, and meshed: it will do if the face then has the problems that it has in the model, by their codes.
+//! Pieces are tried from small to large: the face; the face with its neighbours, of which those are taken out
+//! again that the problem does not need; these with their neighbours; the whole part. A piece is written as
+//! JSON, read back, and meshed: it will do if the face then has the problems that it has in the model, by
+//! their codes.
 
 use crate::error::{Error, FileError, RequestError};
 use crate::meshed::Meshed;
@@ -70,8 +71,8 @@ pub fn repro(model: &Model, face: FaceName, options: &MeshOptions, cancel: &Canc
 }
 
 impl Repro {
-    /// The piece as a STEP file, cut out of the content of the file that the model came from, and whether the face has
-    /// the same problems there. Where the piece in JSON does not show them, this may.
+    /// The piece as a STEP file, cut out of the content of the file that the model came from, and whether the
+    /// face has the same problems there. Where the piece in JSON does not show them, this may.
     ///
     /// # Errors
     /// [`Error::File`] where the content is not that of a STEP file.
@@ -106,8 +107,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The faces of the smallest piece that shows the problems; where there are none, the face alone; where no piece
-    /// shows them, the whole part.
+    /// The faces of the smallest piece that shows the problems; where there are none, the face alone; where
+    /// no piece shows them, the whole part.
     fn smallest(&self) -> Result<Vec<FaceId>, Error> {
         let part = &self.model.brep().parts[self.part.index()];
         let mut faces = vec![self.face];
@@ -181,8 +182,8 @@ fn outcome(meshed: Result<Meshed, Error>) -> Result<Outcome, Error> {
     }
 }
 
-/// The codes of the problems of a face, each once. Where the problems of faces that could not be read have no index,
-/// all are meant: they are those of a model without any other face.
+/// The codes of the problems of a face, each once. Where the problems of faces that could not be read have no
+/// index, all are meant: they are those of a model without any other face.
 fn codes(problems: &[Problem], face: usize) -> Vec<String> {
     let is_of_face =
         |p: &&Problem| p.face.is_none_or(|of| of == face) && (p.face.is_some() || is_unread(problems));

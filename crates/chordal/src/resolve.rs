@@ -13,14 +13,14 @@ use chordal_write::Format;
 /// Measuring the box of the model may take this part of the time of the file and of a face.
 const BOX_SHARE: f64 = 0.25;
 
-/// A tolerance below this many units in the last place of the largest coordinate is refused: evaluating a surface
-/// costs some tens of roundings, so nothing finer can be proven.
+/// A tolerance below this many units in the last place of the largest coordinate is refused: evaluating a
+/// surface costs some tens of roundings, so nothing finer can be proven.
 const FLOOR_ULPS: f64 = 64.0;
 /// Roundings of a 64-bit coordinate on its way through placements of a tree of ordinary depth.
 const PLACEMENT_ULPS: f64 = 8.0;
 
-/// Coordinates in millimetres beyond this are a mistake of the file (it is 100 light years), and squares of lengths
-/// would overflow far above it.
+/// Coordinates in millimetres beyond this are a mistake of the file (it is 100 light years), and squares of
+/// lengths would overflow far above it.
 const LARGEST: f64 = 1e21;
 
 /// Everything that the options mean for this model.
@@ -32,8 +32,8 @@ pub struct Resolved {
     pub boundary_tolerance: f64,
     /// Of the tight box in millimetres, where the tolerance was asked for in percent.
     pub diagonal: Option<f64>,
-    /// What placing the mesh and rounding it to the format's numbers may cost, in millimetres: kept back from the
-    /// tolerance of the parts.
+    /// What placing the mesh and rounding it to the format's numbers may cost, in millimetres: kept back from
+    /// the tolerance of the parts.
     pub rounding: f64,
     /// How every part is placed.
     pub uses: Vec<PartUse>,
@@ -78,7 +78,8 @@ pub(crate) fn resolve(
     let edges = edge_box(model, &uses);
     let requested = [Some(options.tolerance()), options.boundary_tolerance()];
     let relative = requested.iter().flatten().any(|t| matches!(t, Tolerance::Percent(_)));
-    // A face that takes longer counts by its control points: the box is no reason to spend the face's time twice.
+    // A face that takes longer counts by its control points: the box is no reason to spend the face's time
+    // twice.
     let limits = FileLimits::new(options.limits(), model, &uses, bytes, 1.0).part_of(BOX_SHARE);
     let size = if relative { tight_box_within(model, &uses, edges, &limits, cancel) } else { edges };
     let diagonal = relative.then(|| size.diagonal());
@@ -123,8 +124,8 @@ fn out_of_range(model: &Model) -> ResolveError {
     ResolveError::OutOfRange { entity, coordinate: farthest.map_or(f64::INFINITY, reach) }
 }
 
-/// The distance in millimetres by which placing and writing may move a vertex of a model whose coordinates reach
-/// `largest`.
+/// The distance in millimetres by which placing and writing may move a vertex of a model whose coordinates
+/// reach `largest`.
 fn rounding(largest: f64, format: Option<Format>) -> f64 {
     // The length of a vector is at most √3 times its largest coordinate.
     let reach = largest * 3.0_f64.sqrt();

@@ -4,7 +4,8 @@ use chordal_brep::{Color, Model, Node, Part};
 use chordal_mesh::{PartMesh, PassThrough, Rgba, Scene, SceneNode, ScenePart};
 use std::sync::Arc;
 
-/// Joins names, colours and placements of the model with the meshes of its parts, one per part in the model's order.
+/// Joins names, colours and placements of the model with the meshes of its parts, one per part in the model's
+/// order.
 pub(crate) fn scene(model: &Model, meshes: Vec<Arc<PartMesh>>) -> Scene {
     Scene {
         name: model.name.clone(),

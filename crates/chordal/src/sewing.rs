@@ -46,8 +46,8 @@ impl FromStr for Sewing {
     }
 }
 
-/// Sews the parts of a model, each by itself: the model, and one report per part, `None` where it was not sewn. A model
-/// that is not sewn is not copied.
+/// Sews the parts of a model, each by itself: the model, and one report per part, `None` where it was not
+/// sewn. A model that is not sewn is not copied.
 pub fn sew_parts(
     model: Arc<Model>,
     uses: &[PartUse],

@@ -1,14 +1,15 @@
 //! The tight axis-aligned box of a whole placed model: what a tolerance in percent is a percentage of.
 //!
-//! Steps: (1) vertices, and edges sampled and then refined where an extreme may lie between samples; (2) of the faces
-//! that can bulge beyond their edges (spheres, tori, revolutions, free forms, offsets) those whose outer box leaves
-//! the box of step 1; (3) a coarse mesh of these, each triangle that may hold an extreme searched on the exact
-//! surface. Planes, cylinders, cones and extrusions are ruled: a linear function over a trimmed piece has its maximum
-//! on the border, so they need no step 3.
+//! Steps: (1) vertices, and edges sampled and then refined where an extreme may lie between samples; (2) of
+//! the faces that can bulge beyond their edges (spheres, tori, revolutions, free forms, offsets) those whose
+//! outer box leaves the box of step 1; (3) a coarse mesh of these, each triangle that may hold an extreme
+//! searched on the exact surface. Planes, cylinders, cones and extrusions are ruled: a linear function over a
+//! trimmed piece has its maximum on the border, so they need no step 3.
 //!
-//! Every point that enters the box lies on the model, so the box is never too large (beyond what edges are loose by);
-//! it is too small by less than 1e-4 of its diagonal on the shapes of the tests. That is no proof, and none is needed:
-//! the box only turns a percentage into millimetres, and the millimetres are what is proven.
+//! Every point that enters the box lies on the model, so the box is never too large (beyond what edges are
+//! loose by); it is too small by less than 1e-4 of its diagonal on the shapes of the tests. That is no proof,
+//! and none is needed: the box only turns a percentage into millimetres, and the millimetres are what is
+//! proven.
 
 mod edges;
 mod faces;
@@ -95,8 +96,8 @@ pub fn edge_box(model: &Model, uses: &[PartUse]) -> TightBox {
     found
 }
 
-/// The tight box of every placed face, without a limit of time for all faces together. A face that takes longer than
-/// `face_timeout` counts by its edges only.
+/// The tight box of every placed face, without a limit of time for all faces together. A face that takes
+/// longer than `face_timeout` counts by its edges only.
 pub fn tight_box(
     model: &Model,
     uses: &[PartUse],
@@ -108,8 +109,8 @@ pub fn tight_box(
     tight_box_within(model, uses, edges, &FileLimits::new(limits, model, uses, 0, 1.0), cancel)
 }
 
-/// The tight box of every placed face; starts from [`edge_box`]. A face that takes more than the limits counts by its
-/// edges only.
+/// The tight box of every placed face; starts from [`edge_box`]. A face that takes more than the limits
+/// counts by its edges only.
 pub(crate) fn tight_box_within(
     model: &Model,
     uses: &[PartUse],

@@ -2,16 +2,16 @@
 //!
 //! A file may take its limits per megabyte, and the more the finer its tolerance: the work grows with both.
 //! Limits are limits of counted work, so that they give up the same faces on every machine
-//! ([`chordal_nurbs::work`]). Where all faces together would take more than the file may, they are meshed anew
-//! with an equal share of half as much for each: a few hostile faces fail then, and the others are had.
+//! ([`chordal_nurbs::work`]). Where all faces together would take more than the file may, they are meshed
+//! anew with an equal share of half as much for each: a few hostile faces fail then, and the others are had.
 
 use crate::placement::PartUse;
 use chordal_brep::{Issue, Model, Part, ResultIssue, Severity, Source};
 use chordal_tessellate::{FileBudget, Options};
 use std::time::Duration;
 
-/// Faces and edges of sound files take milliseconds, one of degree 100 takes three seconds; a few hostile ones
-/// must not take minutes.
+/// Faces and edges of sound files take milliseconds, one of degree 100 takes three seconds; a few hostile
+/// ones must not take minutes.
 const FACE_TIMEOUT: Duration = Duration::from_secs(4);
 
 /// The methods of the literature take seconds where the default takes a tenth of one.

@@ -1,5 +1,5 @@
-//! Loops that cross, touch or run over each other, in a format whose faces share edges: the region is what the winding
-//! numbers of the loops say, proven, and neighbours keep their common edges.
+//! Loops that cross, touch or run over each other, in a format whose faces share edges: the region is what
+//! the winding numbers of the loops say, proven, and neighbours keep their common edges.
 
 #![cfg(feature = "methods")]
 
@@ -28,7 +28,8 @@ fn surface(bump: f64) -> String {
     )
 }
 
-/// Faces of the sheet, each with its loops as corners of a common list; sides between the same two corners are one edge.
+/// Faces of the sheet, each with its loops as corners of a common list; sides between the same two corners
+/// are one edge.
 fn mesh(name: &str, bump: f64, corners: &[Corner], faces: &[&[&[usize]]], strategy: &str) -> Meshed {
     let mut edges: Vec<[usize; 2]> = Vec::new();
     let mut texts = Vec::new();
@@ -154,7 +155,8 @@ fn regions_are_what_winding_numbers_say_by_every_strategy() {
 
 #[test]
 fn a_neighbour_keeps_the_edge_that_is_crossed() {
-    // Two faces side by side; a hole of the first reaches over their common edge by much, and by less than the file's accuracy.
+    // Two faces side by side; a hole of the first reaches over their common edge by much, and by less than
+    // the file's accuracy.
     for (name, over) in [("wide", 0.1), ("hair", 1e-8)] {
         let corners = [
             (0.1, 0.1),

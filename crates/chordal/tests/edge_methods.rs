@@ -40,8 +40,8 @@ fn models() -> Vec<String> {
     index.lines().skip(1).filter_map(|l| l.split('\t').next()).map(str::to_owned).collect()
 }
 
-/// Many chords of the plane of parameters meet in a pole of `no_pcurves`; one long chord runs along a side of `spline_forms` over
-/// which the face turns to and fro; weights of `weight_range` differ by a million.
+/// Many chords of the plane of parameters meet in a pole of `no_pcurves`; one long chord runs along a side of
+/// `spline_forms` over which the face turns to and fro; weights of `weight_range` differ by a million.
 #[test]
 fn chords_that_know_nothing_of_their_faces_do_no_harm() {
     let methods: Vec<&str> = edge_methods().iter().map(|e| e.name).collect();

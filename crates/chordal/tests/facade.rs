@@ -122,7 +122,8 @@ fn a_face_that_ends_at_a_crease_gets_two_triangles_per_panel() {
     assert_eq!((report.triangles, report.edge_rounds), (6, 0));
 }
 
-/// The border of an offset of a free surface has no proven bound: that is said, and no edge is halved for it without end.
+/// The border of an offset of a free surface has no proven bound: that is said, and no edge is halved for it
+/// without end.
 #[test]
 fn edges_of_which_nothing_is_proven_end() {
     let path = corpus("bracket").with_file_name("iges").join("untrimmed.igs");
@@ -183,7 +184,8 @@ fn nothing_to_mesh_is_an_error_that_says_so() {
     assert!(sentence.contains("wireframe_only.step") && !sentence.contains('\n'), "{sentence}");
 }
 
-/// Two arcs that leave a corner in one direction: chords of equal steps lie on one line, and the triangle between them has no area.
+/// Two arcs that leave a corner in one direction: chords of equal steps lie on one line, and the triangle
+/// between them has no area.
 #[test]
 fn no_corner_stays_shut() {
     for percent in [0.2, 0.5, 1.0, 2.0, 5.0] {
@@ -196,8 +198,8 @@ fn no_corner_stays_shut() {
     }
 }
 
-/// A bent sheet with a strip between two creases that is far narrower than the tolerance and folded over: no facet there keeps
-/// the angle.
+/// A bent sheet with a strip between two creases that is far narrower than the tolerance and folded over: no
+/// facet there keeps the angle.
 #[test]
 fn where_no_facet_keeps_the_angle_the_tolerance_comes_first() {
     let rows = [(-1.0, -0.8, 0.0), (0.0, 0.0, 0.0), (0.0006, 0.0002, 0.3), (1.0, -0.9, 0.0)];
@@ -225,7 +227,8 @@ fn where_no_facet_keeps_the_angle_the_tolerance_comes_first() {
     );
 }
 
-/// Weights from 0.001 to 1000: bounds are wild over the chords and beside them, and there are only so many rounds to make edges finer.
+/// Weights from 0.001 to 1000: bounds are wild over the chords and beside them, and there are only so many
+/// rounds to make edges finer.
 #[test]
 fn wild_bounds_leave_rounds_enough() {
     for percent in [0.2, 0.5, 1.0] {

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Spline surfaces, doubly curved.
 const MODELS: [&str; 3] = ["spline_ball.step", "blade.step", "fillet_bspline.step"];
 
-/// A device with double precision in shaders. Without one the test is skipped, and a line on standard error says so;
-/// `CHORDAL_REQUIRE_GPU=1` makes it fail instead.
+/// A device with double precision in shaders. Without one the test is skipped, and a line on standard error
+/// says so; `CHORDAL_REQUIRE_GPU=1` makes it fail instead.
 fn evaluator() -> Option<GpuEvaluator> {
     match GpuEvaluator::open(DeviceChoice::Best) {
         Ok(evaluator) => Some(evaluator),

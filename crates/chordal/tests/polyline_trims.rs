@@ -1,7 +1,8 @@
 //! Trims given as polylines come out as smooth as the same trims given as curves.
 //!
-//! The survey of the Blender wiki tells of a tessellator that subdivides trimming curves but takes the points of trimming polylines as
-//! they are: on a curved surface, where a straight line of parameters is no straight line in space, its edges are far off.
+//! The survey of the Blender wiki tells of a tessellator that subdivides trimming curves but takes the points
+//! of trimming polylines as they are: on a curved surface, where a straight line of parameters is no straight
+//! line in space, its edges are far off.
 
 #![cfg(feature = "methods")]
 
@@ -95,7 +96,8 @@ fn a_polyline_is_subdivided_as_finely_as_a_curve() {
         let given = [("polyline", polyline(&DIAMOND)), ("degree_1", spline(1)), ("degree_3", spline(3))];
         let meshes = given.map(|(name, trim)| mesh(&format!("{name}_{strategy}"), &trim, strategy));
         let counts = meshes.each_ref().map(samples_of_edges);
-        // Four straight sides over a bump: left alone they would have no sample at all. All sagittas allow at least this many chords.
+        // Four straight sides over a bump: left alone they would have no sample at all. All sagittas allow at
+        // least this many chords.
         assert!((counts[0] + 4) as f64 >= 4.0 * fewest_chords(0.01), "{strategy}: {counts:?}");
         assert!(counts.iter().all(|c| c.abs_diff(counts[0]) <= 4), "{strategy}: {counts:?}");
         for meshed in &meshes {
@@ -120,7 +122,8 @@ fn chords_pass_over_the_points_of_dense_polylines() {
     let points: Vec<(f64, f64)> = (0..=DENSE).map(on_ellipse).collect();
     let meshed = mesh("dense", &polyline(&points), "default");
     let samples = samples_of_edges(&meshed);
-    // The ellipse of semi-axes 4 and 2.5 has ∮√κ ds = 11.06; over √8ε that is 39 chords, and the sheet adds to them.
+    // The ellipse of semi-axes 4 and 2.5 has ∮√κ ds = 11.06; over √8ε that is 39 chords, and the sheet adds
+    // to them.
     assert!((39..DENSE / 5).contains(&samples), "{samples}");
     assert!(meshed.report().clean, "{:?}", meshed.report().error_sentences());
     assert!(meshed.report().boundary_error.is_some_and(|e| e > 0.001 && e <= 0.01));

@@ -1,4 +1,5 @@
-//! The right part of every surface: each model of `corpus/region` and `corpus/charts` has its area by construction.
+//! The right part of every surface: each model of `corpus/region` and `corpus/charts` has its area by
+//! construction.
 
 use chordal::{MeshOptions, Mesher, Model, Tolerance};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! Every strategy on the whole corpus: closed where the file is, within tolerance where proven, and made by its own parts.
+//! Every strategy on the whole corpus: closed where the file is, within tolerance where proven, and made by
+//! its own parts.
 
 #![cfg(feature = "methods")]
 
@@ -22,9 +23,9 @@ fn mesh(name: &str, strategy: &StrategyEntry, bound: Bound) -> Result<Report, St
 /// Models whose every triangle counts for the time that a test may take.
 const SLOW: &[&str] = &["degree_100", "degree_25", "degree_mixed", "weight_range", "weight_negative"];
 
-/// Strategies whose facets cut facets of another face at the coarse tolerance of these tests, although the exact faces
-/// do not cut each other, and which refining does not part (crescent) or is slow to (blade). The audit finds them; any
-/// other crossing fails the test.
+/// Strategies whose facets cut facets of another face at the coarse tolerance of these tests, although the
+/// exact faces do not cut each other, and which refining does not part (crescent) or is slow to (blade). The
+/// audit finds them; any other crossing fails the test.
 const CROSSING: &[(&str, &[&str])] = &[("blade", &["recursive"]), ("crescent", &["cells"])];
 
 /// True where facets of this mesh cross and nothing else is wrong with it.

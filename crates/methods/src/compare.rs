@@ -78,8 +78,8 @@ pub struct ComparedRow {
     pub ratio: f64,
     /// Faces that failed, as placed.
     pub failed_faces: usize,
-    /// Faces that the strategy gave up, so that the default made them, as placed: the other figures of the row are
-    /// theirs, too.
+    /// Faces that the strategy gave up, so that the default made them, as placed: the other figures of the
+    /// row are theirs, too.
     pub given_up_faces: usize,
     /// Rounds in which faces asked for finer edges, the most of any part.
     pub rounds: usize,

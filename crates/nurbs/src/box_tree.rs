@@ -1,5 +1,5 @@
-//! A tree of boxes, split at the median of their centres: items whose boxes meet a box, pairs of items whose boxes meet,
-//! and the nearest item, without a look at all of them.
+//! A tree of boxes, split at the median of their centres: items whose boxes meet a box, pairs of items whose
+//! boxes meet, and the nearest item, without a look at all of them.
 
 use crate::Box3;
 use glam::DVec3;
@@ -54,9 +54,9 @@ impl BoxTree {
         }
     }
 
-    /// The item with the smallest `distance` up to `limit` from `p`, and that distance; of several, the one with the
-    /// lowest index. `distance` is `None` for items that do not count, and never less than the distance from the item's
-    /// box.
+    /// The item with the smallest `distance` up to `limit` from `p`, and that distance; of several, the one
+    /// with the lowest index. `distance` is `None` for items that do not count, and never less than the
+    /// distance from the item's box.
     pub fn nearest(
         &self,
         p: DVec3,

@@ -1,9 +1,9 @@
 //! Transcendental functions and powers that give the same bits on every platform.
 //!
-//! The standard library's sine is that of the platform's C library, and those differ in the last bit: a mesh would
-//! depend on the machine that made it. These come from the crate `libm`, which is Rust alone. `clippy.toml` refuses
-//! the standard library's. Square roots, absolute values, rounding and `mul_add` are exact everywhere, so they stay
-//! methods of `f64`.
+//! The standard library's sine is that of the platform's C library, and those differ in the last bit: a mesh
+//! would depend on the machine that made it. These come from the crate `libm`, which is Rust alone.
+//! `clippy.toml` refuses the standard library's. Square roots, absolute values, rounding and `mul_add` are
+//! exact everywhere, so they stay methods of `f64`.
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -93,8 +93,8 @@ pub fn square(x: f64) -> f64 {
     x * x
 }
 
-/// `base` to a whole power, by repeated squaring. The order of the multiplications, and so the rounding, is fixed;
-/// that of the standard library's `powi` is not.
+/// `base` to a whole power, by repeated squaring. The order of the multiplications, and so the rounding, is
+/// fixed; that of the standard library's `powi` is not.
 #[inline]
 pub fn powi(base: f64, exponent: i32) -> f64 {
     let (mut result, mut factor, mut bits) = (1.0, base, exponent.unsigned_abs());
@@ -121,7 +121,8 @@ mod tests {
         })
     }
 
-    /// Written down once. Where another platform or another version of `libm` gives another bit, meshes change.
+    /// Written down once. Where another platform or another version of `libm` gives another bit, meshes
+    /// change.
     #[test]
     fn the_bits_are_those_of_every_platform() {
         let functions: [(&str, u64, u64); 20] = [

@@ -1,5 +1,5 @@
-//! Reads files and prints what they hold: `cargo run --release --example read_models -- FILE…`; the time is the best
-//! of `REPEATS` (1 unless set).
+//! Reads files and prints what they hold: `cargo run --release --example read_models -- FILE…`; the time is
+//! the best of `REPEATS` (1 unless set).
 
 use chordal_brep::FaceGeometry;
 use std::time::Instant;

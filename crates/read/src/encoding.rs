@@ -1,11 +1,12 @@
 //! The encoding of names: text formats do not state it, and CAD systems write that of their country.
 //!
-//! Text that is valid UTF-8 is UTF-8. Else each candidate gets points for what is frequent in names of its language:
-//! GBK for Chinese characters, Shift-JIS for kana and kanji, Latin-1 for one or two bytes beside small letters. Bytes
-//! that are none of an encoding cost points. The whole file counts, so all names of a file are decoded alike.
+//! Text that is valid UTF-8 is UTF-8. Else each candidate gets points for what is frequent in names of its
+//! language: GBK for Chinese characters, Shift-JIS for kana and kanji, Latin-1 for one or two bytes beside
+//! small letters. Bytes that are none of an encoding cost points. The whole file counts, so all names of a
+//! file are decoded alike.
 //!
-//! Not guaranteed: a file with very few names that make sense in two encodings, such as half-width katakana, may be
-//! taken for the wrong one. Only names depend on it.
+//! Not guaranteed: a file with very few names that make sense in two encodings, such as half-width katakana,
+//! may be taken for the wrong one. Only names depend on it.
 
 use encoding_rs::{GBK, SHIFT_JIS};
 use std::borrow::Cow;
@@ -74,7 +75,8 @@ fn utf8_or_latin(bytes: &[u8]) -> String {
     text
 }
 
-/// Points of a text as GBK: characters of the first level of GB 2312 are frequent, those of the second are rare.
+/// Points of a text as GBK: characters of the first level of GB 2312 are frequent, those of the second are
+/// rare.
 fn gbk(text: &[u8]) -> i64 {
     points(text, |lead, trail| match (lead, trail?) {
         (0xb0..=0xd7, 0xa1..=0xfe) => Some((2, 2)),

@@ -13,8 +13,8 @@
 //! 1. The ends of an edge without length become one vertex, and loops go without it.
 //! 2. A closed edge that returns on its own way is cut at its far end into two, and these become one edge.
 //! 3. Where a loop turns back at a vertex along the edge on which it came, the longer of the two edges is cut
-//!    where the shorter one ends, and the two equal parts become one edge. A loop goes without an edge that it
-//!    runs there and back, unless nothing else is left of it.
+//!    where the shorter one ends, and the two equal parts become one edge. A loop goes without an edge that
+//!    it runs there and back, unless nothing else is left of it.
 //!
 //! Notation: the *looseness* of an edge is how far its curve ends from its vertices.
 //!

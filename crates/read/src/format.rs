@@ -40,8 +40,8 @@ impl Format {
         })
     }
 
-    /// Whether content of this format is text that may be brought into another encoding as a whole. IGES counts the
-    /// bytes of its strings, and decodes each of them.
+    /// Whether content of this format is text that may be brought into another encoding as a whole. IGES
+    /// counts the bytes of its strings, and decodes each of them.
     pub(crate) fn is_text(self, bytes: &[u8]) -> bool {
         let head = &bytes[..bytes.len().min(64)];
         match self {

@@ -1,8 +1,8 @@
 //! Readers of CAD files: bytes in, [`Model`] out.
 //!
-//! The format is recognised by content ([`Format::of`]); compressed files (gzip, zip) are unpacked. Everything that can
-//! be saved arrives: what was repaired or ignored becomes one of the model's issues, a face that cannot be used a
-//! failed face with its reason.
+//! The format is recognised by content ([`Format::of`]); compressed files (gzip, zip) are unpacked.
+//! Everything that can be saved arrives: what was repaired or ignored becomes one of the model's issues, a
+//! face that cannot be used a failed face with its reason.
 //!
 //! ```
 //! use chordal_read::{ReadOptions, read_bytes};
@@ -16,8 +16,8 @@
 //!
 //! # Features
 //!
-//! Each reader is a feature, all of them on by default: `step`, `iges`, `brep`, `rhino`, `scene` (Open Inventor, VRML
-//! and X3D) and `obj`. JSON is always read.
+//! Each reader is a feature, all of them on by default: `step`, `iges`, `brep`, `rhino`, `scene` (Open
+//! Inventor, VRML and X3D) and `obj`. JSON is always read.
 
 // A build with some of the readers leaves parts of what they share without a user.
 #![cfg_attr(
@@ -117,8 +117,9 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
     Ok(model)
 }
 
-/// Faces of a STEP file, by the numbers of their entities, as a STEP file of their own: with all that they refer to, in
-/// the units of the file, without names and header. Numbers that the file does not have are left out.
+/// Faces of a STEP file, by the numbers of their entities, as a STEP file of their own: with all that they
+/// refer to, in the units of the file, without names and header. Numbers that the file does not have are left
+/// out.
 ///
 /// # Errors
 /// [`ReadError`] where the content cannot be unpacked or is no STEP file.
@@ -164,14 +165,16 @@ impl ReadOptions {
     }
 }
 
-/// Which points of a surface trimming loops keep, where the format says nothing of their roles (Open Inventor, VRML and X3D): the
-/// two conventions that the survey of the Blender wiki names. The direction of the loops counts only where loops cross.
+/// Which points of a surface trimming loops keep, where the format says nothing of their roles (Open
+/// Inventor, VRML and X3D): the two conventions that the survey of the Blender wiki names. The direction of
+/// the loops counts only where loops cross.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Winding {
     /// Points that an odd number of loops goes around: the outermost loops keep their inside.
     #[default]
     Odd,
-    /// Points that an even number of loops, or none, goes around: the outermost loops are holes in the surface.
+    /// Points that an even number of loops, or none, goes around: the outermost loops are holes in the
+    /// surface.
     Even,
 }
 

@@ -1,6 +1,7 @@
 //! Numbers of Part 21, and the odd ones that real files hold (`1`, `1.`, `.5`, `1.E+5`, `1.D0`).
 
-/// The number at the start of `text` and its length in bytes; `None` where there is none. The value may be infinite.
+/// The number at the start of `text` and its length in bytes; `None` where there is none. The value may be
+/// infinite.
 pub(crate) fn parse(text: &[u8]) -> Option<(f64, usize)> {
     // The crate reads words for infinity too, and no plus.
     let is_signed = matches!(text.first(), Some(b'-' | b'+'));
@@ -16,8 +17,8 @@ pub(crate) fn parse(text: &[u8]) -> Option<(f64, usize)> {
     }
 }
 
-/// A number whose exponent starts at `at` and is none of C's: Fortran's `D`, or a letter without digits, which is passed
-/// over.
+/// A number whose exponent starts at `at` and is none of C's: Fortran's `D`, or a letter without digits,
+/// which is passed over.
 fn with_odd_exponent(text: &[u8], mantissa: f64, at: usize) -> (f64, usize) {
     let digits = at + 1 + usize::from(matches!(text.get(at + 1), Some(b'-' | b'+')));
     let end = digits + text[digits..].iter().take_while(|b| b.is_ascii_digit()).count();

@@ -1,7 +1,7 @@
 //! Compressed input: gzip (`part.stp.gz`) and zip archives of one file (`part.stpZ`).
 //!
-//! What a file may unpack to is bounded, since a few bytes can stand for gigabytes: text of CAD files shrinks to a
-//! fifth or a tenth, so that [`GROWTH`] leaves room enough.
+//! What a file may unpack to is bounded, since a few bytes can stand for gigabytes: text of CAD files shrinks
+//! to a fifth or a tenth, so that [`GROWTH`] leaves room enough.
 
 use crate::ReadError;
 use flate2::read::{DeflateDecoder, MultiGzDecoder};
@@ -20,7 +20,8 @@ const LEVELS: usize = 3;
 /// The content of a file, unpacked where it is compressed.
 ///
 /// # Errors
-/// [`ReadError::Compressed`] where it cannot be unpacked, [`ReadError::TooLarge`] where it unpacks to too much.
+/// [`ReadError::Compressed`] where it cannot be unpacked, [`ReadError::TooLarge`] where it unpacks to too
+/// much.
 pub(crate) fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, ReadError> {
     let limit = ALWAYS + GROWTH * bytes.len() as u64;
     let mut content = Cow::Borrowed(bytes);
@@ -41,8 +42,8 @@ fn all_of(stream: impl Read, limit: u64) -> Result<Vec<u8>, ReadError> {
     if unpacked.len() as u64 > limit { Err(ReadError::TooLarge { limit }) } else { Ok(unpacked) }
 }
 
-/// The first file of a zip archive. Its local header is enough: a deflated stream ends by itself, a stored one has its
-/// length there.
+/// The first file of a zip archive. Its local header is enough: a deflated stream ends by itself, a stored
+/// one has its length there.
 fn first_of_archive(archive: &[u8], limit: u64) -> Result<Vec<u8>, ReadError> {
     let broken =
         || ReadError::Compressed { reason: "the zip archive has no file that can be unpacked".to_owned() };

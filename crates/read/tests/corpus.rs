@@ -1,4 +1,5 @@
-//! The corpus of the repository: each file holds what its index says, each broken one ends in a sentence or is saved.
+//! The corpus of the repository: each file holds what its index says, each broken one ends in a sentence or
+//! is saved.
 
 mod common;
 

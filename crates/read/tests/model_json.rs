@@ -1,4 +1,5 @@
-//! Chordal's own JSON: what is written is what comes back, and broken documents end in a sentence or are saved.
+//! Chordal's own JSON: what is written is what comes back, and broken documents end in a sentence or are
+//! saved.
 
 mod common;
 

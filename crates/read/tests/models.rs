@@ -1,6 +1,7 @@
 //! Real files: every face arrives.
 //!
-//! The files lie outside the repository: in the folder that CHORDAL_MODELS names, else in `../shared/models` beside it.
+//! The files lie outside the repository: in the folder that CHORDAL_MODELS names, else in `../shared/models`
+//! beside it.
 
 mod common;
 
@@ -216,7 +217,8 @@ fn edges_lie_on_their_faces() {
     assert!(disagreeing.len() * 12 <= pcurves, "{}\n{}", disagreeing.len(), disagreeing[..].join("\n"));
 }
 
-/// Placements and units: the box of all placed edges fits the reference kernel's box of the model, in millimetres.
+/// Placements and units: the box of all placed edges fits the reference kernel's box of the model, in
+/// millimetres.
 #[test]
 fn placed_edges_fill_the_reference_box() {
     let Some(folder) = folder() else { return };

@@ -1,6 +1,8 @@
-//! Real Inventor, VRML and X3D files: each holds what was counted in it by hand, or is refused for a reason that is true.
+//! Real Inventor, VRML and X3D files: each holds what was counted in it by hand, or is refused for a reason
+//! that is true.
 //!
-//! The files lie outside the repository: in the folder that CHORDAL_MODELS names, else in `../shared/models` beside it.
+//! The files lie outside the repository: in the folder that CHORDAL_MODELS names, else in `../shared/models`
+//! beside it.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! Files written by hand in formats other than STEP: each holds what its index says, each broken one ends in a sentence
-//! or is saved, and no mutant of them does harm.
+//! Files written by hand in formats other than STEP: each holds what its index says, each broken one ends in
+//! a sentence or is saved, and no mutant of them does harm.
 
 mod common;
 

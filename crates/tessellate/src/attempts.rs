@@ -95,7 +95,8 @@ fn attempt(
     Ok(Box::new(result))
 }
 
-/// Loops that cross are not cut into ears where they have more points than this: the time grows with the square.
+/// Loops that cross are not cut into ears where they have more points than this: the time grows with the
+/// square.
 const MOST_EARS: usize = 20_000;
 
 /// Triangles of loops that cross: as good as they can be, where the loops cross in truth.

@@ -2,9 +2,9 @@
 //! limit of time as the last guard.
 //!
 //! A timeout of one second allows the work of one second on an ordinary core
-//! ([`work::UNITS_PER_SECOND`]). What is given up for that reason is given up everywhere. Only work that takes
-//! longer than [`SLOWER`] times its nominal time is given up by the clock: on a machine that is much slower,
-//! or in a step that counts too little.
+//! ([`work::UNITS_PER_SECOND`]). What is given up for that reason is given up everywhere. Only work that
+//! takes longer than [`SLOWER`] times its nominal time is given up by the clock: on a machine that is much
+//! slower, or in a step that counts too little.
 //!
 //! A [`FileBudget`] is the work that all faces and edges of a file may take together. Threads draw from it in
 //! any order, so where it is spent, the results of single faces mean nothing: the caller meshes everything

@@ -76,8 +76,8 @@ fn cpu_seconds(_: Kind) -> Option<f64> {
     None
 }
 
-/// When work is given up: after so much CPU time of the thread that made the deadline. Other work on the machine does not
-/// count, so that it does not decide which faces are given up.
+/// When work is given up: after so much CPU time of the thread that made the deadline. Other work on the
+/// machine does not count, so that it does not decide which faces are given up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deadline {
     watch: Stopwatch,

@@ -73,8 +73,8 @@ const MOST_FINER: f64 = 4.0;
 /// How often single chords are halved: a limit for curves that never converge.
 const HALVINGS: usize = 24;
 
-/// The most chords of an edge. Edges of sound files need thousands; one with a control point at 1e10 needs more than fit
-/// into memory. The faces of an edge that needs more fail.
+/// The most chords of an edge. Edges of sound files need thousands; one with a control point at 1e10 needs
+/// more than fit into memory. The faces of an edge that needs more fail.
 const MOST_CHORDS: usize = 200_000;
 
 /// An edge is given up where so many chords are expected after the first even rounds, when their bounds have

@@ -8,19 +8,20 @@ use clap::Args;
 /// What is requested of a mesh, and the threads.
 #[derive(Debug, Args)]
 pub struct AccuracyArgs {
-    /// Largest distance between the mesh and the exact surfaces: a length with its unit (0.1mm, 50um, 0.002in; a bare
-    /// number is in mm), or a percentage of the diagonal of the model's axis-aligned box (0.05%).
+    /// Largest distance between the mesh and the exact surfaces: a length with its unit (0.1mm, 50um,
+    /// 0.002in; a bare number is in mm), or a percentage of the diagonal of the model's axis-aligned box
+    /// (0.05%).
     #[arg(
         long, visible_aliases = ["sag", "linear-deflection"], value_name = "LENGTH|%", default_value = "0.1%",
         allow_hyphen_values = true
     )]
     pub tolerance: Tolerance,
-    /// Separate tolerance for the edges of the model [default: same as --tolerance]. Facets that touch an edge may be as
-    /// far off as the larger of the two.
+    /// Separate tolerance for the edges of the model [default: same as --tolerance]. Facets that touch an
+    /// edge may be as far off as the larger of the two.
     #[arg(long, value_name = "LENGTH|%", allow_hyphen_values = true)]
     pub boundary_tolerance: Option<Tolerance>,
-    /// Largest angle between the exact normals at the two ends of a mesh edge on one face: 20deg, 0.35rad, a bare
-    /// number in degrees, or `off` [default: 20deg].
+    /// Largest angle between the exact normals at the two ends of a mesh edge on one face: 20deg, 0.35rad, a
+    /// bare number in degrees, or `off` [default: 20deg].
     #[arg(
         long, visible_alias = "angular-deflection", value_name = "ANGLE", value_parser = parse_angle,
         allow_hyphen_values = true
@@ -38,12 +39,13 @@ pub struct AccuracyArgs {
     /// How the error of a facet is determined.
     #[arg(long, value_enum, default_value = "proven")]
     pub bound: BoundArg,
-    /// Join free edges of neighbouring faces that are closer than this: a length (a bare number is in mm), `auto` (from the
-    /// resolution of the file and its gaps, see `info`) or `off` [default: auto for parts without shared edges, else off].
+    /// Join free edges of neighbouring faces that are closer than this: a length (a bare number is in mm),
+    /// `auto` (from the resolution of the file and its gaps, see `info`) or `off` [default: auto for parts
+    /// without shared edges, else off].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub sew: Option<Sewing>,
-    /// Which points trimming loops keep, where the format does not distinguish outer loops from holes (Open Inventor,
-    /// VRML, X3D; refused for others) [default: odd].
+    /// Which points trimming loops keep, where the format does not distinguish outer loops from holes (Open
+    /// Inventor, VRML, X3D; refused for others) [default: odd].
     #[arg(long, value_enum)]
     pub winding: Option<WindingArg>,
     /// The format of the input [default: recognised by content].
@@ -52,16 +54,16 @@ pub struct AccuracyArgs {
     /// Number of threads [default: one per core]. The mesh is the same for any number.
     #[arg(long, value_name = "N", value_parser = parse_jobs, allow_hyphen_values = true)]
     pub jobs: Option<usize>,
-    /// Limit of processor time per face and per edge in seconds of an ordinary core, 0 for none [default: 4; 60 with a
-    /// named strategy or edge method].
+    /// Limit of processor time per face and per edge in seconds of an ordinary core, 0 for none [default: 4;
+    /// 60 with a named strategy or edge method].
     #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
     pub face_timeout: Option<TimeoutArg>,
-    /// Limit of processor time of all faces of a file in seconds, 0 for none; larger files than a megabyte and finer
-    /// tolerances than 0.1 % have proportionally more [default: as --face-timeout].
+    /// Limit of processor time of all faces of a file in seconds, 0 for none; larger files than a megabyte
+    /// and finer tolerances than 0.1 % have proportionally more [default: as --face-timeout].
     #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
     pub file_timeout: Option<TimeoutArg>,
-    /// Limit of the memory that the triangles of a file take in MB, 0 for none; larger files than a megabyte and finer
-    /// tolerances than 0.1 % have proportionally more.
+    /// Limit of the memory that the triangles of a file take in MB, 0 for none; larger files than a megabyte
+    /// and finer tolerances than 0.1 % have proportionally more.
     #[arg(long, value_name = "MB", default_value = "1000")]
     pub memory: u64,
     /// Do not look for triangles of closed shells that cut each other, and do not refine where they do.

@@ -9,17 +9,18 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct MeshArgs {
-    /// CAD files; folders, which stand for the STEP, IGES, BREP, 3DM, Open Inventor, VRML and X3D files in them; `-` for
-    /// standard input.
+    /// CAD files; folders, which stand for the STEP, IGES, BREP, 3DM, Open Inventor, VRML and X3D files in
+    /// them; `-` for standard input.
     #[arg(required = true, value_name = "IN")]
     pub inputs: Vec<PathBuf>,
-    /// The mesh file; a folder (one that exists, or a name that ends in `/`); `-` for standard output [default: beside the
-    /// input, for standard input to standard output].
+    /// The mesh file; a folder (one that exists, or a name that ends in `/`); `-` for standard output
+    /// [default: beside the input, for standard input to standard output].
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub accuracy: AccuracyArgs,
-    /// The format of the output; it must agree with the extension of OUT [default: by that extension, else glb].
+    /// The format of the output; it must agree with the extension of OUT [default: by that extension, else
+    /// glb].
     #[arg(long, value_enum)]
     pub format: Option<FormatArg>,
     /// Unit of the written coordinates: um, mm, cm, m, in or ft [default: mm, in GLB and glTF m].
@@ -34,8 +35,8 @@ pub struct MeshArgs {
     /// Also write the edges of the model as lines (GLB and glTF only).
     #[arg(long)]
     pub edges: bool,
-    /// Where to evaluate large faces; errors are proven on the CPU either way. `gpu` needs a build with the feature `gpu`
-    /// and a device with double precision.
+    /// Where to evaluate large faces; errors are proven on the CPU either way. `gpu` needs a build with the
+    /// feature `gpu` and a device with double precision.
     #[arg(long, value_enum, default_value = "cpu")]
     pub device: EvaluateArg,
     /// Write the report to this file as JSON: one object for one input, a batch for several.
@@ -44,7 +45,8 @@ pub struct MeshArgs {
     /// Print the report to standard output as JSON.
     #[arg(long)]
     pub json: bool,
-    /// Draw the subdivision and the triangles of every face in its parameter plane, as SVG files in this folder.
+    /// Draw the subdivision and the triangles of every face in its parameter plane, as SVG files in this
+    /// folder.
     #[arg(long, value_name = "DIR")]
     pub debug_svg: Option<PathBuf>,
     /// Write nothing and exit with 2 if there is any problem.

@@ -32,12 +32,12 @@ pub struct SewArgs {
     /// The mesh file to write; every connected shell becomes an object of its own.
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Join borders closer than this: a length (a bare number is in mm), or `auto`, from the resolution of the coordinates
-    /// and the gaps. No vertex moves further.
+    /// Join borders closer than this: a length (a bare number is in mm), or `auto`, from the resolution of
+    /// the coordinates and the gaps. No vertex moves further.
     #[arg(long, value_name = "LENGTH", default_value = "auto", value_parser = parse_sewing, allow_hyphen_values = true)]
     pub tolerance: Sewing,
-    /// Also write N coarser levels of detail, each with half the triangles of the one before, to OUT.level1, … (needs a
-    /// build with the feature `levels`).
+    /// Also write N coarser levels of detail, each with half the triangles of the one before, to OUT.level1,
+    /// … (needs a build with the feature `levels`).
     #[arg(long, value_name = "N", default_value = "0")]
     pub levels: usize,
     /// Unit of the mesh's coordinates [default: as the file states, else mm].
@@ -109,8 +109,8 @@ pub struct ReproArgs {
     /// The face: #123, the number of its entity, or @5, its place in `faces_detail` of the report.
     #[arg(long, value_name = "ID")]
     pub face: FaceName,
-    /// The file to write: Chordal's JSON, or, where the input is STEP, STEP; its name ends in .json or .step. `-` writes
-    /// JSON to standard output.
+    /// The file to write: Chordal's JSON, or, where the input is STEP, STEP; its name ends in .json or .step.
+    /// `-` writes JSON to standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
     #[command(flatten)]

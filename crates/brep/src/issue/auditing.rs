@@ -255,12 +255,13 @@ pub enum PolylineDefect {
 }
 
 /// Why facets cut each other that no finer mesh would part.
-const CAUSE_IN_FILE: &str = "the exact faces cross in the file, or edges are looser there than the faces are apart";
+const CAUSE_IN_FILE: &str =
+    "the exact faces cross in the file, or edges are looser there than the faces are apart";
 
 impl AuditIssue {
-    /// True where the mesh is as the model in the file is, which has the fault itself: all faces that it names
-    /// cut each other in the file. No finer mesh would be without it, and nothing of the shape is missing: it is
-    /// a warning.
+    /// True where the mesh is as the model in the file is, which has the fault itself: all faces that it
+    /// names cut each other in the file. No finer mesh would be without it, and nothing of the shape is
+    /// missing: it is a warning.
     pub fn is_as_in_file(&self) -> bool {
         matches!(self, Self::SelfIntersections { face_pairs, faces_cross, .. } if face_pairs == faces_cross)
     }
@@ -333,7 +334,13 @@ impl fmt::Display for AuditIssue {
             AuditIssue::InsideOut { volume } => {
                 write!(f, "the shell is inside out: its volume is {} mm³", number(*volume, 4))
             }
-            AuditIssue::SelfIntersections { triangle_pairs, face_pairs, in_file, faces_cross, faces: [a, b] } => {
+            AuditIssue::SelfIntersections {
+                triangle_pairs,
+                face_pairs,
+                in_file,
+                faces_cross,
+                faces: [a, b],
+            } => {
                 let triangles = count(*triangle_pairs, "pair of triangles", "pairs of triangles");
                 let verb = if *triangle_pairs == 1 { "cuts" } else { "cut" };
                 write!(f, "{triangles} of the shell {verb} each other, ")?;

@@ -86,8 +86,8 @@ pub enum MeshIssue {
         /// Why.
         cause: MethodFault,
     },
-    /// The loops of a face cross or touch; the model was given a vertex at each such place, and the face loops without
-    /// crossings.
+    /// The loops of a face cross or touch; the model was given a vertex at each such place, and the face
+    /// loops without crossings.
     LoopsUntangled {
         /// Places where they crossed or touched.
         crossings: usize,

@@ -11,8 +11,8 @@ pub fn count(n: usize, singular: &str, plural: &str) -> String {
     format!("{n} {}", if n == 1 { singular } else { plural })
 }
 
-/// A number with at most `digits` significant digits, as C's `%g` writes it: no trailing zeros, and an exponent
-/// only where the plain form would be long.
+/// A number with at most `digits` significant digits, as C's `%g` writes it: no trailing zeros, and an
+/// exponent only where the plain form would be long.
 ///
 /// ```
 /// use chordal_brep::issue::words::number;

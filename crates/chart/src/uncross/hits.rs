@@ -1,4 +1,5 @@
-//! Where the loops of a face meet: crossings of chords, carried over to the exact curves, and vertices on other edges.
+//! Where the loops of a face meet: crossings of chords, carried over to the exact curves, and vertices on
+//! other edges.
 
 use super::looseness::Looseness;
 use super::split::is_still;
@@ -9,8 +10,8 @@ use crate::unroll::Chart;
 use chordal_brep::VertexId;
 use chordal_nurbs::{CurveInverter, DVec2, DVec3, Range, orient, work};
 
-/// A crossing of chords is followed to the curves by this many cuts at most: each leaves a chord of half the length or far
-/// less.
+/// A crossing of chords is followed to the curves by this many cuts at most: each leaves a chord of half the
+/// length or far less.
 const STEPS: usize = 48;
 
 /// Faces with more crossings than this are not mended: their loops are noise.
@@ -86,7 +87,8 @@ pub fn loops_cross(chart: &Chart) -> bool {
     found
 }
 
-/// True where the first corner of a side lies on another one, and its loop goes from one side of that to the other.
+/// True where the first corner of a side lies on another one, and its loop goes from one side of that to the
+/// other.
 fn passes_through(own: &Side, other: &Side) -> bool {
     let [a, b] = other.ends;
     let p = own.ends[0];
@@ -202,8 +204,8 @@ fn points(context: &TrimmedFace<'_, '_>, stops: [Stop; 2]) -> Option<[DVec3; 2]>
     Some([p, q])
 }
 
-/// Where two edges come nearest to each other, from a place nearby. Beside a loose vertex their chords, which end in
-/// it, cross elsewhere than the curves do.
+/// Where two edges come nearest to each other, from a place nearby. Beside a loose vertex their chords, which
+/// end in it, cross elsewhere than the curves do.
 fn nearest_stops(context: &TrimmedFace<'_, '_>, mut stops: [Stop; 2]) -> Option<[Stop; 2]> {
     for _ in 0..STEPS {
         for k in 0..2 {

@@ -1,8 +1,8 @@
-//! How far the edges of crossing loops are off what they should lie on: what lies within that of each other may
-//! be one in the file.
+//! How far the edges of crossing loops are off what they should lie on: what lies within that of each other
+//! may be one in the file.
 //!
-//! The *looseness* of an edge is the largest distance of its ends from its vertices, and of its samples from the
-//! surfaces of the faces whose loops cross.
+//! The *looseness* of an edge is the largest distance of its ends from its vertices, and of its samples from
+//! the surfaces of the faces whose loops cross.
 
 use super::Crossed;
 use crate::keys::{Key, Segment};
@@ -56,7 +56,8 @@ impl Looseness {
         self.resolution + HOOK * self.of_edge(edge)
     }
 
-    /// The common vertex of two edges that meet beside it, where both are so near to it that they may end there.
+    /// The common vertex of two edges that meet beside it, where both are so near to it that they may end
+    /// there.
     pub(super) fn hook(&self, part: &Part, edges: [u32; 2], points: [DVec3; 2]) -> Option<VertexId> {
         let [a, b] = edges.map(|e| &part.edges[e as usize]);
         let of_b = [b.start, b.end];

@@ -12,8 +12,8 @@ pub enum Closedness {
     /// Every shell is closed: no open edge, no inconsistent edge, no missing face. Only such a mesh is called
     /// watertight.
     Closed,
-    /// Every shell that the file declares closed is closed, and at least one other shell has a border. The file does
-    /// not promise that such a shell encloses a volume.
+    /// Every shell that the file declares closed is closed, and at least one other shell has a border. The
+    /// file does not promise that such a shell encloses a volume.
     OpenByDesign,
     /// A shell that the file declares closed has an open edge, an inconsistent edge or a missing face.
     Leaking,

@@ -76,7 +76,8 @@ impl Problem {
     }
 }
 
-/// The fields of the variant. A variant without fields has none; a variant with one unnamed field calls it `value`.
+/// The fields of the variant. A variant without fields has none; a variant with one unnamed field calls it
+/// `value`.
 fn values(kind: &IssueKind) -> Map<String, Value> {
     let variant = match kind {
         IssueKind::Read(kind) => serde_json::to_value(kind),

@@ -59,7 +59,8 @@ impl Report {
         sentences
     }
 
-    /// What is proven of the faces: `290 of 292 faces proven within 0.55 mm; 2 unproven: #6387 (line 9), #6390`.
+    /// What is proven of the faces: `290 of 292 faces proven within 0.55 mm; 2 unproven: #6387 (line 9),
+    /// #6390`.
     pub fn proof_sentence(&self) -> String {
         let meshed = self.faces.meshed;
         if meshed == 0 {
@@ -93,8 +94,8 @@ impl Report {
         format!("{proven} of {total} proven within {within}; {unproven} unproven: {}{more}", names.join(", "))
     }
 
-    /// What the requested methods gave up, so that the default made it: `strategy quadtree gave up 3 of 28 faces`;
-    /// `None` where they gave up nothing.
+    /// What the requested methods gave up, so that the default made it: `strategy quadtree gave up 3 of 28
+    /// faces`; `None` where they gave up nothing.
     pub fn given_up_sentence(&self) -> Option<String> {
         let options = &self.options;
         let mut given_up = Vec::new();
@@ -110,7 +111,8 @@ impl Report {
         (!given_up.is_empty()).then(|| format!("{}: made by the default", given_up.join(" and ")))
     }
 
-    /// Whether the surface is closed: `watertight`, `open by design (28 open edges)`, `leaking (1 of 2 closed shells)`.
+    /// Whether the surface is closed: `watertight`, `open by design (28 open edges)`, `leaking (1 of 2 closed
+    /// shells)`.
     pub fn closedness_sentence(&self) -> String {
         let shells = &self.shells;
         match self.closedness {

@@ -18,7 +18,8 @@ const ZOOMS: usize = 8;
 const SPREAD: usize = 100;
 /// What is looked for, relative to the box: far finer than what a percentage is asked in.
 const MATTERS: f64 = 1e-6;
-/// A face that needs more triangles than this at the coarse tolerance will fail later as well, and with a reason.
+/// A face that needs more triangles than this at the coarse tolerance will fail later as well, and with a
+/// reason.
 const GIVE_UP: usize = 100_000;
 
 pub(super) fn include(
@@ -133,7 +134,8 @@ impl Facet {
 }
 
 /// How far the surface may rise over the corners of a triangle. The coarse mesh is only estimated to keep its
-/// tolerance, so that twice that is looked at; where a spread of triangles sags far less, four times their sag.
+/// tolerance, so that twice that is looked at; where a spread of triangles sags far less, four times their
+/// sag.
 fn slack(facets: &mut [Facet], surface: &Surface, tolerance: f64) -> f64 {
     let stride = facets.len() / SPREAD + 1;
     let sag =

@@ -1,9 +1,11 @@
 //! The shape of the source code, checked: which module uses which, and which crate depends on which.
 //!
-//! 1. Inside a crate, the arrows between the modules of one folder point one way. A module stands for everything below it:
-//!    at the top of a crate `edges` is `edges.rs` with all of `edges/`, and inside `edges/` its files are compared with each
-//!    other. The parent file is not a node: children may use what it defines.
-//! 2. Between crates, `ARCHITECTURE.md` draws every arrow that a `Cargo.toml` has, directly or over other arrows.
+//! 1. Inside a crate, the arrows between the modules of one folder point one way. A module stands for
+//!    everything below it: at the top of a crate `edges` is `edges.rs` with all of `edges/`, and inside
+//!    `edges/` its files are compared with each other. The parent file is not a node: children may use what
+//!    it defines.
+//! 2. Between crates, `ARCHITECTURE.md` draws every arrow that a `Cargo.toml` has, directly or over other
+//!    arrows.
 //!
 //! Not seen: methods called on a value whose type comes from elsewhere, and paths made by macros.
 
@@ -109,9 +111,9 @@ fn crates_with_their_tests_are_in_no_circle() {
     assert_eq!(found, known, "{}", graph.cycles().join("\n"));
 }
 
-/// Lines of the default mesher: a reader must be able to read it in a few days. What grows past this belongs in a crate of
-/// its own, as `chart` is. Counted as `wc -l` counts, with comments and blank lines, but without the tests at the ends of
-/// the files.
+/// Lines of the default mesher: a reader must be able to read it in a few days. What grows past this belongs
+/// in a crate of its own, as `chart` is. Counted as `wc -l` counts, with comments and blank lines, but
+/// without the tests at the ends of the files.
 const MOST_LINES_OF_THE_MESHER: usize = 8_000;
 
 #[test]

@@ -1,8 +1,9 @@
 //! The arrows between crates: those of `Cargo.toml`, and those that `ARCHITECTURE.md` draws.
 //!
-//! The drawing is the first block of preformatted text in `ARCHITECTURE.md`. A line of it starts with the name of a
-//! folder and `/`, then either `uses none of ours` or `→` and names with commas between them (`all above` stands for
-//! every crate of an earlier line, and a word `only` behind a name has no meaning). Two spaces end the list.
+//! The drawing is the first block of preformatted text in `ARCHITECTURE.md`. A line of it starts with the
+//! name of a folder and `/`, then either `uses none of ours` or `→` and names with commas between them (`all
+//! above` stands for every crate of an earlier line, and a word `only` behind a name has no meaning). Two
+//! spaces end the list.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -31,10 +31,10 @@ impl Surface {
 const IN_PLANE: f64 = 1e-12;
 
 impl Surface {
-    /// The two surfaces of revolution that an offset of one may be, with the same parameters: the profile moved
-    /// to either side in its plane, which holds the axis. On a face that keeps to one side of the axis, the
-    /// offset is one of them, since its normal turns over where the profile passes the axis. `None` for other
-    /// surfaces.
+    /// The two surfaces of revolution that an offset of one may be, with the same parameters: the profile
+    /// moved to either side in its plane, which holds the axis. On a face that keeps to one side of the axis,
+    /// the offset is one of them, since its normal turns over where the profile passes the axis. `None` for
+    /// other surfaces.
     pub fn offset_revolutions(&self) -> Option<[Surface; 2]> {
         let Surface::Offset { basis, distance } = self else { return None };
         let Surface::Revolution { profile, axis_origin, axis } = basis.as_ref() else { return None };

@@ -14,9 +14,9 @@ pub(crate) struct Chained {
     pub sorted: bool,
 }
 
-/// Orders coedges by their vertices. Where several could follow, `jump` decides: the distance in parameter space from
-/// the end of one to the start of the other, infinite where not known. A chain that could close goes on where going
-/// on is the smaller jump: so both sides of a seam stay in one loop.
+/// Orders coedges by their vertices. Where several could follow, `jump` decides: the distance in parameter
+/// space from the end of one to the start of the other, infinite where not known. A chain that could close
+/// goes on where going on is the smaller jump: so both sides of a seam stay in one loop.
 pub(crate) fn chained(
     coedges: Vec<Coedge>,
     ends: impl Fn(&Coedge) -> (VertexId, VertexId),

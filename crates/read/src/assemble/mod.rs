@@ -29,8 +29,8 @@ pub(crate) struct PartBuilder {
     joints: FxHashMap<(VertexId, VertexId), EdgeId>,
 }
 
-/// Ends of a loop's edges that are nearer than this part of the loop's size are one vertex, where the file says no
-/// more: coordinates are commonly rounded to seven digits.
+/// Ends of a loop's edges that are nearer than this part of the loop's size are one vertex, where the file
+/// says no more: coordinates are commonly rounded to seven digits.
 const SAME_VERTEX: f64 = 1e-6;
 
 impl PartBuilder {
@@ -112,8 +112,9 @@ impl PartBuilder {
         }
     }
 
-    /// Closes a loop whose coedges are in order: ends within `stated` (or rounding) of each other become one vertex,
-    /// wider gaps are closed with straight edges. Returns the widest of these gaps, 0 where there is none.
+    /// Closes a loop whose coedges are in order: ends within `stated` (or rounding) of each other become one
+    /// vertex, wider gaps are closed with straight edges. Returns the widest of these gaps, 0 where there is
+    /// none.
     pub(crate) fn close(&mut self, coedges: &mut Vec<Coedge>, stated: f64, source: Source) -> f64 {
         self.merge_meeting(coedges, stated);
         let tolerance = self.joint_tolerance(coedges, stated);

@@ -7,8 +7,8 @@ use glam::DMat3;
 /// Entries that are off by less than this are rounded ones: the axes are meant to be orthogonal.
 const ROUNDED: f64 = 1e-4;
 
-/// A placement from its rows: three of the axes and the shift. Rounded axes are made exactly orthogonal again, with the
-/// scale they have in the mean.
+/// A placement from its rows: three of the axes and the shift. Rounded axes are made exactly orthogonal
+/// again, with the scale they have in the mean.
 ///
 /// # Errors
 /// Where the rows flatten space or are not finite.

@@ -1,7 +1,8 @@
 //! Spline data as files state them: knots with multiplicities, periodic forms, weights of zero.
 
 use chordal_brep::{ReadIssue, Real};
-/// The knots each repeated by its multiplicity. Nothing is allocated before they are known to add up to `expected`.
+/// The knots each repeated by its multiplicity. Nothing is allocated before they are known to add up to
+/// `expected`.
 pub(crate) fn expanded_knots(
     values: &[f64],
     multiplicities: &[i64],
@@ -18,11 +19,11 @@ pub(crate) fn expanded_knots(
     Ok(repeated.flat_map(|(&value, &m)| std::iter::repeat_n(value, m as usize)).collect())
 }
 
-/// A periodic knot vector made an ordinary one over the same domain, and the number of control points it is for:
-/// control point `i` is the file's `i mod count`.
+/// A periodic knot vector made an ordinary one over the same domain, and the number of control points it is
+/// for: control point `i` is the file's `i mod count`.
 ///
-/// `values` and `multiplicities` hold one period with both its ends; the multiplicities, the last one left out, add up
-/// to `count`.
+/// `values` and `multiplicities` hold one period with both its ends; the multiplicities, the last one left
+/// out, add up to `count`.
 pub(crate) fn unrolled(
     values: &[f64],
     multiplicities: &[i64],
@@ -59,8 +60,9 @@ pub(crate) fn unrolled(
 
 /// Replaces weights of zero; true where there were any.
 ///
-/// A control point of weight zero has no effect on the curve, yet the homogeneous form needs it somewhere. A weight
-/// of 1e-13 of the largest moves the curve by about 1e-13 of the control net's size: less than rounding does.
+/// A control point of weight zero has no effect on the curve, yet the homogeneous form needs it somewhere. A
+/// weight of 1e-13 of the largest moves the curve by about 1e-13 of the control net's size: less than
+/// rounding does.
 pub(crate) fn replace_zero_weights(weights: &mut [f64]) -> bool {
     let largest = weights.iter().fold(0.0f64, |most, w| most.max(w.abs()));
     let mut any = false;

@@ -28,8 +28,8 @@ pub(crate) struct Builder<'d> {
     vertices: FxHashMap<(Ix, Loc), Result<VertexId, ReadIssue>>,
     pub edges: FxHashMap<(Ix, Loc), Result<EdgeId, ReadIssue>>,
     patches: FxHashMap<(i64, Loc), Result<PlacedPatch, ReadIssue>>,
-    /// Uses of shapes that may still be followed: it bounds the work on files whose shapes use each other in ever
-    /// new places. An honest file needs about one for each use it states.
+    /// Uses of shapes that may still be followed: it bounds the work on files whose shapes use each other in
+    /// ever new places. An honest file needs about one for each use it states.
     pub budget: usize,
 }
 

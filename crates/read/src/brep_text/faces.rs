@@ -14,8 +14,8 @@ use chordal_nurbs::{DVec2, UvBox};
 const TOLERANCES: f64 = 2.0;
 
 impl Builder<'_> {
-    /// Adds the face of a record at a place, `flipped` where its user turns it over; a face that has triangles but no
-    /// surface becomes a tessellated item.
+    /// Adds the face of a record at a place, `flipped` where its user turns it over; a face that has
+    /// triangles but no surface becomes a tessellated item.
     pub(crate) fn face(&mut self, ix: Ix, loc: Loc, flipped: bool) -> Vec<FaceId> {
         let look = Look { flipped, source: self.doc.source(ix), ..Look::default() };
         match self.read_face(ix, loc, &look) {

@@ -1,7 +1,7 @@
 //! Locations: products of powers of elementary placements.
 //!
-//! Two uses of a shape are the same edge where they have the same factors, not where their matrices are nearly equal:
-//! every location is kept as its list of factors, and equal lists have one number.
+//! Two uses of a shape are the same edge where they have the same factors, not where their matrices are
+//! nearly equal: every location is kept as its list of factors, and equal lists have one number.
 
 use super::tokens::{Stop, Tokens};
 use crate::assemble::placement;
@@ -15,7 +15,8 @@ pub(crate) type Loc = u32;
 /// The identity.
 pub(crate) const NOWHERE: Loc = 0;
 
-/// A location with more factors than this becomes a factor of its own: files build chains as deep as their assemblies.
+/// A location with more factors than this becomes a factor of its own: files build chains as deep as their
+/// assemblies.
 const MOST_FACTORS: usize = 256;
 /// Powers are ±1 in all but made-up files.
 const MOST_POWER: i64 = 64;
@@ -101,7 +102,8 @@ impl Locations {
         self.intern(vec![(element, 1)], matrix)
     }
 
-    /// One record of the section: `1` and a matrix of 3 × 4, or `2` and pairs of a location and a power, ended by 0.
+    /// One record of the section: `1` and a matrix of 3 × 4, or `2` and pairs of a location and a power,
+    /// ended by 0.
     ///
     /// # Errors
     /// Where the text cannot be followed.

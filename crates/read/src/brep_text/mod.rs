@@ -2,9 +2,9 @@
 //!
 //! Source: the format as `BRepTools_ShapeSet` and `GeomTools` of OpenCASCADE write it.
 //!
-//! Bytes → [`tokens`] → [`document`]: tables of [`locations`], [`curves`], [`surfaces`], [`triangulations`] and the
-//! records of [`shapes`]. [`parts`] then groups what the file holds by its location and builds each part:
-//! [`bodies`], [`faces`], [`edges`]. Topology is the file's own; nothing is matched by coordinates.
+//! Bytes → [`tokens`] → [`document`]: tables of [`locations`], [`curves`], [`surfaces`], [`triangulations`]
+//! and the records of [`shapes`]. [`parts`] then groups what the file holds by its location and builds each
+//! part: [`bodies`], [`faces`], [`edges`]. Topology is the file's own; nothing is matched by coordinates.
 
 mod bodies;
 mod builder;

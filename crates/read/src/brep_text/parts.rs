@@ -1,7 +1,7 @@
 //! Parts and where they are placed.
 //!
-//! What stands at one location becomes one part in its own coordinates, so that solids which share faces go on
-//! sharing them; the same shapes at another location are the same part, placed again.
+//! What stands at one location becomes one part in its own coordinates, so that solids which share faces go
+//! on sharing them; the same shapes at another location are the same part, placed again.
 
 use super::builder::Builder;
 use super::document::Document;

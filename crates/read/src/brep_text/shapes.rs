@@ -143,7 +143,8 @@ pub(crate) fn reference(tokens: &mut Tokens<'_>) -> Result<Option<(i64, Orientat
     Ok(Some((number, orientation, tokens.integer()?)))
 }
 
-/// Tolerance, point, and representations on curves and surfaces, which are passed over: the point is what counts.
+/// Tolerance, point, and representations on curves and surfaces, which are passed over: the point is what
+/// counts.
 fn vertex(tokens: &mut Tokens<'_>) -> Result<Kind, Stop> {
     let tolerance = tokens.real()?;
     let point = point(tokens)?;

@@ -1,7 +1,7 @@
 //! Surfaces, brought to the parameters that the model uses.
 //!
-//! The file's cone has its v along the slant, ours along the axis. The file's placements may be left-handed, ours are
-//! not: there the axis, and with it v, is turned round.
+//! The file's cone has its v along the slant, ours along the axis. The file's placements may be left-handed,
+//! ours are not: there the axis, and with it v, is turned round.
 
 use super::curves::{MAX_DEPTH, Parsed, bezier_knots, curve, finite, knot_vector, knots, point, poles};
 use super::tokens::{Stop, Tokens};

@@ -123,7 +123,8 @@ impl<'a> Tokens<'a> {
         Ok(self.integer()? != 0)
     }
 
-    /// The continuity that an edge has between two surfaces (`C0`, `G1`, `CN`), which may stand right behind a number.
+    /// The continuity that an edge has between two surfaces (`C0`, `G1`, `CN`), which may stand right behind
+    /// a number.
     ///
     /// # Errors
     /// Where there is none.

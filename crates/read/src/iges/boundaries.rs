@@ -1,4 +1,5 @@
-//! Boundaries of trimmed and bounded surfaces: types 142 and 141, curves in space beside curves in parameter space.
+//! Boundaries of trimmed and bounded surfaces: types 142 and 141, curves in space beside curves in parameter
+//! space.
 
 use super::curves::{Segment, Segment2, segments, segments2};
 use super::document::{Doc, Ix, Res};
@@ -77,8 +78,8 @@ pub(crate) fn curve_on_surface(doc: &Doc<'_>, ix: Ix, by: &DAffine3, patch: &Pat
     either(doc, ix, model, parameters, preference)
 }
 
-/// 141: which curves there are, preference, surface, then curves in space, each with its sense and its curves in
-/// parameter space.
+/// 141: which curves there are, preference, surface, then curves in space, each with its sense and its curves
+/// in parameter space.
 pub(crate) fn boundary(doc: &Doc<'_>, ix: Ix, by: &DAffine3, patch: &Patch) -> Res<Boundary> {
     let mut args = doc.open(ix)?;
     args.skip(1);
@@ -161,7 +162,8 @@ pub(crate) const LOOSE: f64 = 0.02;
 /// A piece's ends in space and in parameter space belong together within this part of its length.
 const SAME_END: f64 = 0.05;
 
-/// Two curves run at the same pace where equal shares are apart by no more than this part of the piece's extent.
+/// Two curves run at the same pace where equal shares are apart by no more than this part of the piece's
+/// extent.
 const PACE: f64 = 1e-3;
 
 /// Boundaries of more pieces are matched only if they start with the same piece.
@@ -182,8 +184,8 @@ impl Boundary {
         self.model.iter().map(far).fold(0.0, f64::max)
     }
 
-    /// Gives each piece in space its curve in parameter space; false, nothing given, where they do not belong together
-    /// piece by piece.
+    /// Gives each piece in space its curve in parameter space; false, nothing given, where they do not belong
+    /// together piece by piece.
     pub(crate) fn match_pieces(&mut self, patch: &Patch, resolution: f64) -> bool {
         let size = self.size();
         let tiny = (1e-7 * size).max(resolution.min(1e-5 * size));
@@ -260,8 +262,8 @@ impl Boundary {
         worst
     }
 
-    /// True where the pieces in space run counter-clockwise in the parameters of `patch`: each point of them is looked for
-    /// among the curves in parameter space.
+    /// True where the pieces in space run counter-clockwise in the parameters of `patch`: each point of them
+    /// is looked for among the curves in parameter space.
     pub(crate) fn turn(&self, patch: &Patch) -> Option<bool> {
         const STEPS: u32 = 16;
         let steps = || (0..STEPS).map(|k| f64::from(k) / f64::from(STEPS));
@@ -282,8 +284,8 @@ impl Boundary {
         (area != 0.0).then_some(area > 0.0)
     }
 
-    /// True where the curves in parameter space, closed by a straight line where they are open, run counter-clockwise;
-    /// none where they wind round a closed surface.
+    /// True where the curves in parameter space, closed by a straight line where they are open, run
+    /// counter-clockwise; none where they wind round a closed surface.
     pub(crate) fn parameter_turn(&self, patch: &Patch) -> Option<bool> {
         const STEPS: u32 = 16;
         let at = |p: &ParameterUse, k: u32| p.at(f64::from(k) / f64::from(STEPS));

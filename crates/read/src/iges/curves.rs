@@ -59,7 +59,8 @@ fn is_path(form: i64) -> bool {
     matches!(form, 1..=3 | 11..=13 | 63)
 }
 
-/// The segments of a curve in the order in which it runs, moved by `by` after the entity's own transformation.
+/// The segments of a curve in the order in which it runs, moved by `by` after the entity's own
+/// transformation.
 pub(crate) fn segments(doc: &Doc<'_>, ix: Ix, by: &DAffine3) -> Res<Vec<Segment>> {
     let mut all = Vec::new();
     append(doc, ix, by, 0, &mut all)?;
@@ -148,7 +149,8 @@ fn path(doc: &Doc<'_>, ix: Ix) -> Res<(Curve, Range)> {
     Ok((curve, range))
 }
 
-/// 130: basis, kind of offset, …, distances, normal of the plane, range. Only a constant distance has a curve here.
+/// 130: basis, kind of offset, …, distances, normal of the plane, range. Only a constant distance has a curve
+/// here.
 fn offset(doc: &Doc<'_>, ix: Ix, depth: u32) -> Res<(Curve, Range)> {
     let mut args = doc.open(ix)?;
     let (basis, kind) = (args.reference()?, args.integer()?);
@@ -174,8 +176,8 @@ fn offset(doc: &Doc<'_>, ix: Ix, depth: u32) -> Res<(Curve, Range)> {
     Ok((Curve::Offset { basis: Box::new(curve), distance: -distance, reference: normal }, range))
 }
 
-/// A chain of segments as one curve with the parameters that the format gives it: lengths of the segments' own ranges
-/// added up from 0.
+/// A chain of segments as one curve with the parameters that the format gives it: lengths of the segments'
+/// own ranges added up from 0.
 pub(crate) fn joined(doc: &Doc<'_>, ix: Ix, mut segments: Vec<Segment>) -> Res<Segment> {
     if segments.len() == 1
         && let Some(only) = segments.pop()

@@ -46,11 +46,13 @@ pub(crate) struct Doc<'a> {
     /// Of strings.
     encoding: Encoding,
     pub notes: Notes,
-    /// Bytes of parameters that may still be read: it bounds the work on files whose references fan out for ever.
+    /// Bytes of parameters that may still be read: it bounds the work on files whose references fan out for
+    /// ever.
     budget: Cell<u64>,
 }
 
-/// The encoding of the strings of a file: lines are joined, since characters of several bytes may be broken over two.
+/// The encoding of the strings of a file: lines are joined, since characters of several bytes may be broken
+/// over two.
 fn encoding_of(sections: &Sections<'_>) -> Encoding {
     let lines = || sections.global.iter().chain(&sections.parameters).map(|line| line.text);
     if lines().all(<[u8]>::is_ascii) {

@@ -46,8 +46,8 @@ pub(crate) fn split(bytes: &[u8]) -> impl Iterator<Item = (u32, &[u8])> {
     })
 }
 
-/// The letter, text and sequence number of a line. Where the columns are shifted (tabs, cut blanks), the letter before the
-/// number at the end of the line.
+/// The letter, text and sequence number of a line. Where the columns are shifted (tabs, cut blanks), the
+/// letter before the number at the end of the line.
 pub(crate) fn parsed(line: &[u8]) -> Option<(u8, &[u8], u64)> {
     let letter = |b: u8| matches!(b.to_ascii_uppercase(), b'S' | b'G' | b'D' | b'P' | b'T' | b'C' | b'B');
     if let Some(&found) = line.get(TEXT)

@@ -1,7 +1,7 @@
 //! Names, colours and levels of entities.
 //!
-//! A name is a property (406, form 15) that the entity points to behind its own parameters, else its label in the
-//! directory. Colours are sRGB percentages; the model holds linear values.
+//! A name is a property (406, form 15) that the entity points to behind its own parameters, else its label in
+//! the directory. Colours are sRGB percentages; the model holds linear values.
 
 use super::builder::Builder;
 use super::document::{Doc, Ix};

@@ -12,9 +12,9 @@ use std::sync::Arc;
 const SAME_SIDE: f64 = 1e-4;
 
 impl Builder<'_, '_> {
-    /// The loop of a boundary's pieces; none where it has no extent. It runs counter-clockwise in our parameters if
-    /// `outer`, clockwise if not, wherever that can be told: `turn` says which way the pieces run, true for
-    /// counter-clockwise.
+    /// The loop of a boundary's pieces; none where it has no extent. It runs counter-clockwise in our
+    /// parameters if `outer`, clockwise if not, wherever that can be told: `turn` says which way the pieces
+    /// run, true for counter-clockwise.
     pub(crate) fn model_loop(
         &mut self,
         ix: Ix,
@@ -161,7 +161,8 @@ fn area(pieces: &[ModelUse]) -> Option<f64> {
     let (low, high) = polygon.iter().fold((polygon[0], polygon[0]), |(a, b), p| (a.min(*p), b.max(*p)));
     let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
     let n = ends.len();
-    // Along a pole the boundary may jump, but only within its own box; round a closed surface it ends a period away.
+    // Along a pole the boundary may jump, but only within its own box; round a closed surface it ends a
+    // period away.
     let jump = (ends[n - 1][1] - ends[0][0]) / size;
     if jump.length() > 0.01 && n == 1 || jump.length() > 0.9 {
         return None;

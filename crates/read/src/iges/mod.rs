@@ -2,9 +2,10 @@
 //!
 //! Source: *Initial Graphics Exchange Specification 5.3*, US PRO, 1996; types are its entity type numbers.
 //!
-//! Bytes → [`lines`] (which section each line belongs to) → [`document`]: the [`global`] section and the directory as a
-//! table, [`parameters`] read on demand. [`tree`] finds what no other entity uses and builds each part: [`faces`] with
-//! [`boundaries`] and [`loops`] (143, 144), [`topology`] (186, 514, 510), and below them [`surfaces`] and [`curves`].
+//! Bytes → [`lines`] (which section each line belongs to) → [`document`]: the [`global`] section and the
+//! directory as a table, [`parameters`] read on demand. [`tree`] finds what no other entity uses and builds
+//! each part: [`faces`] with [`boundaries`] and [`loops`] (143, 144), [`topology`] (186, 514, 510), and below
+//! them [`surfaces`] and [`curves`].
 
 mod boundaries;
 mod builder;
@@ -53,7 +54,8 @@ pub(crate) fn looks_like_iges(bytes: &[u8]) -> bool {
     false
 }
 
-/// The binary form begins with a letter and the length of the section that it opens, as a number of four bytes.
+/// The binary form begins with a letter and the length of the section that it opens, as a number of four
+/// bytes.
 fn is_binary(bytes: &[u8]) -> bool {
     matches!(bytes, [b'B', 0, 0, 0, 1..=255, ..] | [b'B', 1..=255, 0, 0, 0, ..])
 }

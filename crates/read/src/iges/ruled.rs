@@ -1,7 +1,7 @@
 //! Type 118: ruled surfaces, as splines that are linear in v.
 //!
-//! Points of equal share of the parameter are joined. Rational curves are joined in homogeneous coordinates: the lines
-//! are the same, only v runs along them at another pace.
+//! Points of equal share of the parameter are joined. Rational curves are joined in homogeneous coordinates:
+//! the lines are the same, only v runs along them at another pace.
 
 use super::curves::{joined, segments};
 use super::document::{Doc, Ix, Res};
@@ -11,8 +11,8 @@ use chordal_nurbs::{Curve, DAffine3, NurbsCurve3, NurbsError, NurbsSurface, Surf
 /// Knots of the two curves that are nearer than this (over 0..=1) are one.
 const SAME_KNOT: f64 = 1e-9;
 
-/// 118: two curves, whether the second is run backwards, whether the surface is developable. Form 0 asks for equal
-/// shares of the length: for lines and arcs the same.
+/// 118: two curves, whether the second is run backwards, whether the surface is developable. Form 0 asks for
+/// equal shares of the length: for lines and arcs the same.
 pub(crate) fn surface(doc: &Doc<'_>, ix: Ix) -> Res<(Surface, UvBox)> {
     let mut args = doc.open(ix)?;
     let curves = [args.reference()?, args.reference()?];

@@ -1,7 +1,7 @@
 //! Surfaces of revolution and extrusions that are planes, cylinders, cones, spheres or tori.
 //!
-//! Faces whose boundaries are known in space need no parameters, and on an elementary surface points tell them exactly,
-//! also where a generatrix ends on the axis.
+//! Faces whose boundaries are known in space need no parameters, and on an elementary surface points tell
+//! them exactly, also where a generatrix ends on the axis.
 
 use super::surfaces::Patch;
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, Range, Surface, math};

@@ -30,7 +30,8 @@ impl Parameters {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Patch {
     pub surface: Surface,
-    /// `None` where the file's parameters of this surface are of no use: it is elementary, and points tell more.
+    /// `None` where the file's parameters of this surface are of no use: it is elementary, and points tell
+    /// more.
     pub parameters: Option<Parameters>,
     /// Our Su × Sv points against the file's.
     pub reversed: bool,
@@ -203,7 +204,8 @@ fn profile(doc: &Doc<'_>, ix: Ix, curve: Ix) -> Res<Segment> {
     joined(doc, ix, segments(doc, curve, &DAffine3::IDENTITY)?)
 }
 
-/// 120: axis (a line), generatrix, start and end angle. The file's u runs along the generatrix, ours round the axis.
+/// 120: axis (a line), generatrix, start and end angle. The file's u runs along the generatrix, ours round
+/// the axis.
 fn revolution(doc: &Doc<'_>, ix: Ix, mut args: Args<'_>) -> Res<Patch> {
     let (axis, generatrix) = (args.reference()?, args.reference()?);
     let (start, end) = (args.real()?, args.real()?);
@@ -224,7 +226,8 @@ fn revolution(doc: &Doc<'_>, ix: Ix, mut args: Args<'_>) -> Res<Patch> {
     })
 }
 
-/// 122: directrix, and where the generatrix through the directrix's start ends. Both parameters run over 0..=1.
+/// 122: directrix, and where the generatrix through the directrix's start ends. Both parameters run over
+/// 0..=1.
 fn tabulated(doc: &Doc<'_>, ix: Ix, mut args: Args<'_>) -> Res<Patch> {
     let directrix = args.reference()?;
     let end = args.point()?;

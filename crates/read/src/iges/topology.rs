@@ -1,4 +1,5 @@
-//! Manifold solids: lists of vertices (502) and edges (504), loops (508), faces (510), shells (514), solids (186).
+//! Manifold solids: lists of vertices (502) and edges (504), loops (508), faces (510), shells (514), solids
+//! (186).
 
 use super::boundaries::directed;
 use super::builder::{Builder, EdgeRow, KnownEdge};
@@ -309,7 +310,8 @@ impl Builder<'_, '_> {
 
 /// The part of a curve between two vertices, and whether it runs from the second to the first.
 ///
-/// The curve's own ends are the vertices in files as they should be; else the vertices are looked for along it.
+/// The curve's own ends are the vertices in files as they should be; else the vertices are looked for along
+/// it.
 fn bounded(segment: Segment, p: DVec3, q: DVec3, closed: bool) -> Option<(Curve, Range, bool)> {
     let extent = segment.extent();
     let (a, b) = (segment.start(), segment.end());

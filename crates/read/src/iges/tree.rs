@@ -1,5 +1,5 @@
-//! What the file is about: entities that no other uses, gathered into parts; subfigures (308) placed by their instances
-//! (408); groups (402) as bodies.
+//! What the file is about: entities that no other uses, gathered into parts; subfigures (308) placed by their
+//! instances (408); groups (402) as bodies.
 
 use super::builder::Builder;
 use super::curves::is_curve;
@@ -91,7 +91,8 @@ fn references(doc: &Doc<'_>, ix: Ix) -> Res<Vec<Ix>> {
     }
     let mut args = doc.open(ix)?;
     let mut found = Vec::new();
-    // `-`: a parameter that is no reference; `+`: a reference; `n`: a number of rounds of the letters behind it.
+    // `-`: a parameter that is no reference; `+`: a reference; `n`: a number of rounds of the letters behind
+    // it.
     let (head, rounds) = match kind {
         102 => ("n", "+"),
         108 => ("----+", ""),

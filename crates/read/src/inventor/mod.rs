@@ -1,7 +1,7 @@
 //! Open Inventor files (1.0, 2.0 and 2.1; ASCII and binary) and VRML 1.0, which is a part of Inventor.
 //!
-//! Bytes → [`crate::scene::text`] or [`binary`] (nodes) → [`walk`], which carries the [`state`] that nodes change for
-//! those after them: [`surfaces`] makes spline surfaces of it, [`shapes`] polygons and solids.
+//! Bytes → [`crate::scene::text`] or [`binary`] (nodes) → [`walk`], which carries the [`state`] that nodes
+//! change for those after them: [`surfaces`] makes spline surfaces of it, [`shapes`] polygons and solids.
 
 mod binary;
 mod fields;

@@ -1,7 +1,7 @@
 //! What geomdl (NURBS-Python) exports as JSON: spline surfaces with trims in their parameter space.
 //!
-//! As geomdl's own tessellator has it, a trim cuts away what it encloses unless its `reversed` is 1, when it keeps only
-//! that. Trims may lie partly beyond the surface; they end where it does.
+//! As geomdl's own tessellator has it, a trim cuts away what it encloses unless its `reversed` is 1, when it
+//! keeps only that. Trims may lie partly beyond the surface; they end where it does.
 
 use super::trims::{ControlPoints, Sense, trim_loop};
 use crate::assemble::Notes;

@@ -1,8 +1,9 @@
 //! Every basis that OBJ has as B-splines, exactly, one direction at a time.
 //!
-//! Notation: n degree, K + 1 control points c, segments s over breakpoints. Bézier, Cardinal, Taylor and basis matrix
-//! segments are polynomials of their own; each becomes a Bézier segment by a matrix that acts on its control points, and
-//! the segments a B-spline whose inner knots have multiplicity n (n + 1 where two segments do not meet).
+//! Notation: n degree, K + 1 control points c, segments s over breakpoints. Bézier, Cardinal, Taylor and
+//! basis matrix segments are polynomials of their own; each becomes a Bézier segment by a matrix that acts on
+//! its control points, and the segments a B-spline whose inner knots have multiplicity n (n + 1 where two
+//! segments do not meet).
 
 use chordal_brep::{ReadIssue, Real};
 use chordal_nurbs::{DVec4, NurbsError};

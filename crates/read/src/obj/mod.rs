@@ -1,8 +1,9 @@
 //! Wavefront OBJ: free-form surfaces with trims, and polygons, which pass through as triangles.
 //!
-//! Text → [`lines`] (statements, continued lines joined) → [`reader`] (vertices, attributes, elements in the order of the
-//! file) → [`element`] (a curve or surface with its body) with [`basis`] (every basis as B-splines, exactly) and
-//! [`polygons`]. `call` and `csh` statements are never followed: a model is one file, and no file runs commands.
+//! Text → [`lines`] (statements, continued lines joined) → [`reader`] (vertices, attributes, elements in the
+//! order of the file) → [`element`] (a curve or surface with its body) with [`basis`] (every basis as
+//! B-splines, exactly) and [`polygons`]. `call` and `csh` statements are never followed: a model is one file,
+//! and no file runs commands.
 
 mod basis;
 mod element;

@@ -1,7 +1,8 @@
 //! Curves, in space or in parameter space: those have z = 0 in the file.
 //!
-//! Every curve is put into a form whose parameters are Rhino's own, so that ranges of edges and trims hold as they are:
-//! lines and polylines become splines of degree 1, arcs and what is joined from pieces are given piecewise.
+//! Every curve is put into a form whose parameters are Rhino's own, so that ranges of edges and trims hold as
+//! they are: lines and polylines become splines of degree 1, arcs and what is joined from pieces are given
+//! piecewise.
 
 use super::bytes::{Bytes, Res};
 use super::object::{Class, object};

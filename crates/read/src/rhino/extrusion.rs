@@ -1,7 +1,7 @@
 //! Extrusions: closed or open profiles moved along a line, with caps or without.
 //!
-//! Rhino keeps the profiles flat; the path is the z axis of their plane, `up` its y axis. Every piece of a profile becomes
-//! a wall; walls and caps share their edges.
+//! Rhino keeps the profiles flat; the path is the z axis of their plane, `up` its y axis. Every piece of a
+//! profile becomes a wall; walls and caps share their edges.
 
 use super::bytes::{ANONYMOUS, Bytes, Res};
 use super::curves::{Piece, RhinoCurve, Shape, curve_object, profiles};
@@ -122,7 +122,8 @@ impl Maker<'_> {
                 self.builder.straight_edge(a, b, self.look.source)
             })
             .collect();
-        // Outer profiles that run clockwise seen against the path, and inner ones that do not, have walls turned over.
+        // Outer profiles that run clockwise seen against the path, and inner ones that do not, have walls
+        // turned over.
         let turned = closed && (area(&pieces, &frame) > 0.0) != outer;
         let mut rims = [Vec::new(), Vec::new()];
         for (i, (curve, range)) in pieces.iter().enumerate() {

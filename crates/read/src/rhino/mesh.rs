@@ -86,7 +86,8 @@ fn buffer<'a>(data: &mut Bytes<'a>) -> Res<Cow<'a, [u8]>> {
             let mut packed = data.chunk_of(ANONYMOUS)?;
             let packed = packed.take(packed.len())?;
             let mut unpacked = Vec::new();
-            // One byte more than stated shows a buffer that is too long; what is stated too high costs nothing.
+            // One byte more than stated shows a buffer that is too long; what is stated too high costs
+            // nothing.
             let mut decoder = ZlibDecoder::new(packed).take(size as u64 + 1);
             decoder
                 .read_to_end(&mut unpacked)

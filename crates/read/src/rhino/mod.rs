@@ -1,9 +1,9 @@
 //! Rhino's 3DM archives, versions 1 to 8.
 //!
-//! Bytes → [`bytes`] (chunks in chunks) → [`archive`] (tables; the objects with their attributes) → [`object`] (a class and
-//! its data) → [`brep`], [`surfaces`], [`curves`] (as the file holds them) → [`build`] (faces over
-//! shared edges); [`extrusion`] and [`mesh`] besides. Version 1 has objects of its own: [`legacy`]. The layout
-//! follows openNURBS, the library that defines the format.
+//! Bytes → [`bytes`] (chunks in chunks) → [`archive`] (tables; the objects with their attributes) →
+//! [`object`] (a class and its data) → [`brep`], [`surfaces`], [`curves`] (as the file holds them) →
+//! [`build`] (faces over shared edges); [`extrusion`] and [`mesh`] besides. Version 1 has objects of its own:
+//! [`legacy`]. The layout follows openNURBS, the library that defines the format.
 
 mod archive;
 mod brep;

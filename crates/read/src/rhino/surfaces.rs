@@ -6,7 +6,8 @@ use super::object::{Class, object};
 use chordal_brep::ReadIssue;
 use chordal_nurbs::{Curve, Curve2, DVec2, DVec3, NurbsCurve3, NurbsSurface, Range, Surface, UvBox};
 
-/// A surface with the map from Rhino's parameters to its own: exchanged where `swapped`, then scaled and moved.
+/// A surface with the map from Rhino's parameters to its own: exchanged where `swapped`, then scaled and
+/// moved.
 #[derive(Clone, Debug)]
 pub(super) struct RhinoSurface {
     pub surface: Surface,
@@ -98,7 +99,8 @@ fn plane_surface(data: &mut Bytes) -> Res<RhinoSurface> {
     Ok(RhinoSurface { surface, domain, swapped: false, scale, shift })
 }
 
-/// A profile turned about an axis: by an angle along the first parameter, or along the second where transposed.
+/// A profile turned about an axis: by an angle along the first parameter, or along the second where
+/// transposed.
 fn revolution(data: &mut Bytes) -> Res<RhinoSurface> {
     let (major, _) = data.version()?;
     let (from, to) = (data.point()?, data.point()?);
@@ -126,8 +128,8 @@ fn revolution(data: &mut Bytes) -> Res<RhinoSurface> {
     Ok(RhinoSurface { surface, domain, swapped, scale, shift })
 }
 
-/// A curve as a spline over another domain. Within arcs its parameters differ a little from Rhino's; where a trim then
-/// leaves its edge, the edge is followed.
+/// A curve as a spline over another domain. Within arcs its parameters differ a little from Rhino's; where a
+/// trim then leaves its edge, the edge is followed.
 fn with_parameters(curve: &Curve, own: &Range, domain: Range) -> Res<NurbsCurve3> {
     let nurbs = curve.to_nurbs(*own).map_err(ReadIssue::from)?;
     let at = |t: f64| domain.start + (t - own.start) / own.length() * domain.length();

@@ -14,9 +14,10 @@ pub(crate) struct Direction {
 
 /// The knots of a direction with `count` control points.
 ///
-/// Without knots that fit (`count + order`, not decreasing) they are spread evenly over 0..1, the ends repeated so that
-/// the spline begins and ends in its first and last points. A `closed` direction, of which the caller has made sure that
-/// its first and last points agree, is made periodic where its knots do not end it there.
+/// Without knots that fit (`count + order`, not decreasing) they are spread evenly over 0..1, the ends
+/// repeated so that the spline begins and ends in its first and last points. A `closed` direction, of which
+/// the caller has made sure that its first and last points agree, is made periodic where its knots do not end
+/// it there.
 ///
 /// # Errors
 /// Where order and number of points make no spline.

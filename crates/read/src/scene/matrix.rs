@@ -4,8 +4,8 @@ use super::graph::Node;
 use chordal_nurbs::{DAffine3, DVec3, math};
 use glam::{DMat4, DQuat};
 
-/// The transform of a `Transform` node: translation · center · rotation · scale (along scaleOrientation) · −center.
-/// Inventor calls the scale `scaleFactor`, VRML and X3D `scale`. Angles are in units of `radians`.
+/// The transform of a `Transform` node: translation · center · rotation · scale (along scaleOrientation) ·
+/// −center. Inventor calls the scale `scaleFactor`, VRML and X3D `scale`. Angles are in units of `radians`.
 pub(crate) fn of_transform(node: &Node, radians: f64) -> DAffine3 {
     let vector = |name, default: f64| DVec3::from(node.vector(name, [default; 3]));
     let center = vector("center", 0.0);

@@ -21,8 +21,8 @@ pub(crate) struct Net<'a> {
     pub closed: [bool; 2],
 }
 
-/// Makes points homogeneous: `points` are already multiplied by their weights, as X3D, VRML and GLU have it. Weights
-/// that are not one for each point are not used.
+/// Makes points homogeneous: `points` are already multiplied by their weights, as X3D, VRML and GLU have it.
+/// Weights that are not one for each point are not used.
 pub(crate) fn weighted(points: &[DVec3], weights: &[f64]) -> Vec<DVec4> {
     let all = weights.len() == points.len();
     points.iter().enumerate().map(|(i, p)| p.extend(if all { weights[i] } else { 1.0 })).collect()
@@ -70,8 +70,8 @@ pub(crate) fn surface(net: &Net<'_>) -> Result<(NurbsSurface, Vec<ReadIssue>), R
     Ok((surface, notes))
 }
 
-/// Files of these formats hold about six digits. Sides that differ by less than they can say are meant to be one point
-/// (a pole), or to meet: they are made to.
+/// Files of these formats hold about six digits. Sides that differ by less than they can say are meant to be
+/// one point (a pole), or to meet: they are made to.
 fn join_rounded(points: &mut [DVec3], directions: &[&Direction; 2]) {
     let size = points.iter().fold(0.0, |d: f64, p| d.max((*p - points[0]).abs().max_element()));
     let near = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= ROUNDED * size;
@@ -142,7 +142,8 @@ mod tests {
 
     #[test]
     fn poles_and_seams_of_six_digits_are_exact() {
-        // A ring at each of three heights, the outer ones points but for rounding; the last column off by rounding.
+        // A ring at each of three heights, the outer ones points but for rounding; the last column off by
+        // rounding.
         let off = |i: usize, j: usize| 1e-6 * ((3 * i + 5 * j) % 4) as f64;
         let ring = [[1., 0.], [1., 1.], [-1., 1.], [-1., -1.], [1., -1.], [1., 0.]];
         let mut points = Vec::new();

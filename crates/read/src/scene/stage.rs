@@ -1,5 +1,5 @@
-//! The model under construction: shapes become bodies of one common part, solids and what is used more than once
-//! become parts of their own.
+//! The model under construction: shapes become bodies of one common part, solids and what is used more than
+//! once become parts of their own.
 
 use super::graph::{Graph, NodeIx};
 use crate::assemble::Notes;

@@ -1,5 +1,5 @@
-//! The walk through a scene graph: every node once for each of its uses. A node that is used more than once, and whose
-//! uses differ in their place only, becomes a part that is placed several times.
+//! The walk through a scene graph: every node once for each of its uses. A node that is used more than once,
+//! and whose uses differ in their place only, becomes a part that is placed several times.
 
 use super::context::Context;
 use super::graph::{Graph, NodeIx};
@@ -16,8 +16,8 @@ pub(crate) trait Language: Sized {
     /// What a node inherits besides its place. Two uses of a node under equal ones are the same part.
     type Shared: Clone + PartialEq;
 
-    /// Reads a node: hands its shapes to the stage, changes the state, or walks on to its children. `name` is that of
-    /// the nearest named node above.
+    /// Reads a node: hands its shapes to the stage, changes the state, or walks on to its children. `name` is
+    /// that of the nearest named node above.
     fn visit(walk: &mut Walk<'_, Self>, ix: NodeIx, state: &mut State<Self::Shared>, name: &str);
 
     /// Whether nodes of this kind change nothing for their neighbours, so that they may become a part.

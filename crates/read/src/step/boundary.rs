@@ -1,8 +1,9 @@
 //! Boundaries of curve-bounded surfaces: pieces of curves chained to a closed loop.
 //!
-//! ISO 10303-42 lists the pieces of a composite curve in order, each with its sense. Files list them in any order and
-//! with any sense (Creo's do), so the ends decide. The pieces keep the file's curves in the parameter space of the
-//! surface: on a cone with two nappes or across a seam nothing else says which part of the surface is meant.
+//! ISO 10303-42 lists the pieces of a composite curve in order, each with its sense. Files list them in any
+//! order and with any sense (Creo's do), so the ends decide. The pieces keep the file's curves in the
+//! parameter space of the surface: on a cone with two nappes or across a seam nothing else says which part of
+//! the surface is meant.
 
 use super::builder::Builder;
 use super::document::{Ix, Res};
@@ -55,8 +56,8 @@ impl Builder<'_> {
         }
         let source = self.doc.source(ix);
         let count = pieces.len();
-        // Vertex i is where piece i ends, and unless a gap follows where piece i + 1 starts; a piece that is a single
-        // point, at a pole, starts where it ends.
+        // Vertex i is where piece i ends, and unless a gap follows where piece i + 1 starts; a piece that is
+        // a single point, at a pole, starts where it ends.
         let points = single_points(&pieces);
         let gap = |i: usize| pieces[i].end().distance(pieces[(i + 1) % count].start());
         let gaps: Vec<f64> = (0..count).map(gap).collect();
@@ -130,10 +131,11 @@ struct Chained {
     turned: bool,
 }
 
-/// The pieces in an order and with senses in which each starts where the one before ends, as far as they meet.
+/// The pieces in an order and with senses in which each starts where the one before ends, as far as they
+/// meet.
 ///
-/// Pieces that meet already stay as they are. Else the chain begins with the first piece, and takes each time the
-/// piece with the end nearest to where the chain ends; in the end most pieces run as the file says.
+/// Pieces that meet already stay as they are. Else the chain begins with the first piece, and takes each time
+/// the piece with the end nearest to where the chain ends; in the end most pieces run as the file says.
 fn chained(mut pieces: Vec<Piece>, tolerance: f64) -> (Vec<Piece>, Chained) {
     let count = pieces.len();
     let meets = (0..count).all(|i| pieces[i].end().distance(pieces[(i + 1) % count].start()) <= tolerance);
@@ -187,13 +189,15 @@ fn extent(from: DVec3, points: &[DVec3]) -> f64 {
     points.iter().fold(0.0f64, |m, p| m.max(p.distance(from)))
 }
 
-/// Boundaries of more pieces are taken as they are listed: the search takes time by the square of their number.
+/// Boundaries of more pieces are taken as they are listed: the search takes time by the square of their
+/// number.
 const MOST_PIECES: usize = 4096;
 
 /// Places along a piece of a boundary at which its extent is measured.
 const PIECE_SAMPLES: u32 = 16;
 
-/// Points nearer than this share of a boundary's size are one: coordinates are commonly rounded to seven digits.
+/// Points nearer than this share of a boundary's size are one: coordinates are commonly rounded to seven
+/// digits.
 const ONE_POINT: f64 = 1e-7;
 
 /// Ends of pieces nearer than this share of the boundary's size meet, where the file states no accuracy.

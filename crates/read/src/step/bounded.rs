@@ -1,4 +1,5 @@
-//! Surfaces that bring their own bounds: rectangular-trimmed, curve-bounded, and those that are finite by nature.
+//! Surfaces that bring their own bounds: rectangular-trimmed, curve-bounded, and those that are finite by
+//! nature.
 
 use super::builder::Builder;
 use super::curves_2d::angular;
@@ -89,7 +90,8 @@ impl Builder<'_> {
             .fold(0.0, f64::max);
         let meets = |a: usize, b: usize| points[a].distance(points[b]) <= SAME_CORNER * size;
         let middle = |a: usize, b: usize| surface.point((corners[a] + corners[b]) * 0.5);
-        // A side is a point where its middle lies on its ends; two opposite sides are one seam where both ends meet.
+        // A side is a point where its middle lies on its ends; two opposite sides are one seam where both
+        // ends meet.
         let pole = |a: usize, b: usize| meets(a, b) && middle(a, b).distance(points[a]) <= SAME_CORNER * size;
         let seam = |[a, b]: [usize; 2], [c, d]: [usize; 2]| {
             meets(a, c) && meets(b, d) && middle(a, b).distance(middle(c, d)) <= SAME_CORNER * size

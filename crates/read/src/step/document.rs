@@ -30,8 +30,8 @@ pub(crate) struct Doc<'a> {
     pub data: Option<usize>,
     pub lines: u32,
     pub notes: Notes,
-    /// Entities that may still be opened. It bounds the work on files whose references fan out for ever; an honest
-    /// file needs about one opening per reference, and a reference takes at least three bytes.
+    /// Entities that may still be opened. It bounds the work on files whose references fan out for ever; an
+    /// honest file needs about one opening per reference, and a reference takes at least three bytes.
     budget: Cell<u64>,
 }
 
@@ -46,8 +46,9 @@ impl<'a> Doc<'a> {
         Self { bytes, entries, ids, repeated, keywords, data, lines, notes, budget }
     }
 
-    /// The entity that a reference in `from` means: of several with one number the nearest before it, else the first
-    /// behind it. So reads the kernel in widest use, and so do files pasted together from others stay whole.
+    /// The entity that a reference in `from` means: of several with one number the nearest before it, else
+    /// the first behind it. So reads the kernel in widest use, and so do files pasted together from others
+    /// stay whole.
     pub(crate) fn find_from(&self, id: u64, from: Ix) -> Option<Ix> {
         let found = self.find(id)?;
         if self.repeated.is_empty() {

@@ -1,11 +1,13 @@
 //! A few faces of a file as a file of their own, without names.
 //!
-//! 1. Of each face, everything that it refers to is kept, as it is written; strings are emptied, entity numbers stay.
-//! 2. Of the units, the context of the representation to which the first face belongs is kept, with names of units.
+//! 1. Of each face, everything that it refers to is kept, as it is written; strings are emptied, entity
+//!    numbers stay.
+//! 2. Of the units, the context of the representation to which the first face belongs is kept, with names of
+//!    units.
 //! 3. A shell with the faces, a representation and a product are written behind these.
 //!
-//! What a face needs from above (the sense of its shell, its placement) is not kept. An entity that the file lacks is
-//! missing in the excerpt, too.
+//! What a face needs from above (the sense of its shell, its placement) is not kept. An entity that the file
+//! lacks is missing in the excerpt, too.
 
 use super::document::{Doc, Ix};
 use super::keyword::Kw;
@@ -13,7 +15,8 @@ use super::scan::string_end;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Entities that are looked at on the way to the representation of a face: a bound for files that nest endlessly.
+/// Entities that are looked at on the way to the representation of a face: a bound for files that nest
+/// endlessly.
 const MOST_VISITS: usize = 20_000_000;
 
 const HEADER: &str = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n\

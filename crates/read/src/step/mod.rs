@@ -1,9 +1,9 @@
 //! STEP (ISO 10303-21 files of AP203, AP214, AP242).
 //!
 //! Bytes → [`scan`] (where each entity is) → [`document`] (entities by number, opened by [`opening`]) →
-//! [`products`] and [`styles`] (who is used where, in which colour) → [`tree`] (nodes), which builds each part
-//! through [`builder`]: [`bodies`], [`faces`], [`edges`], and below them [`surfaces`] and [`curves`], each reading
-//! the attributes it needs with [`args`].
+//! [`products`] and [`styles`] (who is used where, in which colour) → [`tree`] (nodes), which builds each
+//! part through [`builder`]: [`bodies`], [`faces`], [`edges`], and below them [`surfaces`] and [`curves`],
+//! each reading the attributes it needs with [`args`].
 
 mod args;
 mod bodies;

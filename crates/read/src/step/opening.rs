@@ -10,8 +10,8 @@ impl Doc<'_> {
         Ok(Args::new(self, ix, self.text(ix)?))
     }
 
-    /// The attributes of `ix` as an entity of kind `kw`: its own where it is simple, those of the leaf of that name
-    /// where it is complex.
+    /// The attributes of `ix` as an entity of kind `kw`: its own where it is simple, those of the leaf of
+    /// that name where it is complex.
     pub(crate) fn leaf(&self, ix: Ix, kw: Kw) -> Res<Args<'_>> {
         match self.find_leaf(ix, kw)? {
             Some(args) => Ok(args),
@@ -28,8 +28,8 @@ impl Doc<'_> {
         Ok(args.leaves().into_iter().find(|(name, _)| *name == kw).map(|(_, args)| args))
     }
 
-    /// What an instance is, with the attributes that follow its name: those of a simple entity, or those of the first
-    /// leaf of a complex instance that is one of `principal`.
+    /// What an instance is, with the attributes that follow its name: those of a simple entity, or those of
+    /// the first leaf of a complex instance that is one of `principal`.
     pub(crate) fn body(&self, ix: Ix, principal: &[Kw]) -> Res<(Kw, Args<'_>)> {
         let mut args = self.open(ix)?;
         if self.kw(ix) != Kw::Complex {

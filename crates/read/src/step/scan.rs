@@ -1,6 +1,8 @@
-//! One pass over the file: where each entity is, and what it is called. Attributes are read later, where needed.
+//! One pass over the file: where each entity is, and what it is called. Attributes are read later, where
+//! needed.
 //!
-//! Tolerant: a missing `;` or quote costs at most one entity, a file that ends early keeps all that is complete.
+//! Tolerant: a missing `;` or quote costs at most one entity, a file that ends early keeps all that is
+//! complete.
 
 use super::keyword::{Keywords, Kw};
 use crate::assemble::Notes;
@@ -393,8 +395,8 @@ impl Scanner<'_> {
     }
 }
 
-/// The position behind the quote that closes the string whose content starts at `at`; `None` where the string runs
-/// into the next entity (a line that starts with `#digits=`).
+/// The position behind the quote that closes the string whose content starts at `at`; `None` where the string
+/// runs into the next entity (a line that starts with `#digits=`).
 pub(crate) fn string_end(bytes: &[u8], at: usize, quote: u8) -> Option<usize> {
     let length = memchr(quote, &bytes[at..])?;
     let content = &bytes[at..at + length];

@@ -1,5 +1,5 @@
-//! Strings of Part 21: the control directives `\X2\…\X0\`, `\X4\…\X0\`, `\X\hh`, `\S\c`, `\P.\`, doubled quotes and
-//! backslashes; raw UTF-8 and Latin-1 bytes are accepted too.
+//! Strings of Part 21: the control directives `\X2\…\X0\`, `\X4\…\X0\`, `\X\hh`, `\S\c`, `\P.\`, doubled
+//! quotes and backslashes; raw UTF-8 and Latin-1 bytes are accepted too.
 
 /// The text of the raw bytes between two quotes.
 pub(crate) fn decode(raw: &[u8]) -> String {

@@ -44,7 +44,8 @@ fn from_frame(frame: &Frame) -> DAffine3 {
     DAffine3::from_mat3_translation(glam::DMat3::from_cols(frame.x, frame.y, frame.z), frame.origin)
 }
 
-/// CARTESIAN_TRANSFORMATION_OPERATOR_3D: names first (one or three), then axis 1, axis 2, origin, scale, axis 3.
+/// CARTESIAN_TRANSFORMATION_OPERATOR_3D: names first (one or three), then axis 1, axis 2, origin, scale, axis
+/// 3.
 fn operator(geometry: &mut Geometry<'_>, ix: Ix) -> Res<DAffine3> {
     let mut args = geometry.doc.open(ix)?;
     args.skip(args.left().saturating_sub(5));
@@ -73,8 +74,8 @@ fn operator_of_leaves(geometry: &mut Geometry<'_>, ix: Ix) -> Res<DAffine3> {
     assemble(geometry, ix, [axis1, axis2, axis3], origin, scale)
 }
 
-/// The axes made orthonormal as ISO 10303-42 does (third, first, second in this order); the second keeps its side,
-/// so that a mirrored operator mirrors.
+/// The axes made orthonormal as ISO 10303-42 does (third, first, second in this order); the second keeps its
+/// side, so that a mirrored operator mirrors.
 fn assemble(
     geometry: &Geometry<'_>,
     ix: Ix,

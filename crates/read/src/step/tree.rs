@@ -97,7 +97,8 @@ impl<'d> Tree<'d> {
         }
     }
 
-    /// Unfolds everything: products, then representations that no product leads to, then bodies without either.
+    /// Unfolds everything: products, then representations that no product leads to, then bodies without
+    /// either.
     pub(crate) fn unfold(&mut self) {
         let tops: Vec<Ix> =
             self.products.definitions.iter().copied().filter(|pd| !self.products.used.contains(pd)).collect();
@@ -244,8 +245,8 @@ impl<'d> Tree<'d> {
         id
     }
 
-    /// The representations of a product: those given to it, and those that relations lead to without crossing into
-    /// another product; each with its transformation to the product's first one.
+    /// The representations of a product: those given to it, and those that relations lead to without crossing
+    /// into another product; each with its transformation to the product's first one.
     fn shape_of(&mut self, definition: Ix) -> Vec<(Ix, DAffine3)> {
         let products = self.products;
         let Some(given) = products.shapes.get(&definition) else { return Vec::new() };
@@ -470,7 +471,8 @@ impl<'d> Tree<'d> {
         })
     }
 
-    /// Shape representations that no product leads to; those of features and properties only where nothing else is.
+    /// Shape representations that no product leads to; those of features and properties only where nothing
+    /// else is.
     fn orphans(&mut self, auxiliary: bool) {
         let doc = self.doc;
         let candidates = doc.all(|kw| !matches!(kw, Kw::CartesianPoint | Kw::Direction | Kw::OrientedEdge));

@@ -1,8 +1,9 @@
 //! Loops that leave the surface, cut off where it ends.
 //!
-//! Each such loop is cut where it crosses the border of the domain. What remains of it inside are chords from border to
-//! border with the material on their left; from the end of a chord the new outline follows the border, the domain on its
-//! left as well, to where the next chord begins (after Weiler and Atherton, for one of the polygons a rectangle).
+//! Each such loop is cut where it crosses the border of the domain. What remains of it inside are chords from
+//! border to border with the material on their left; from the end of a chord the new outline follows the
+//! border, the domain on its left as well, to where the next chord begins (after Weiler and Atherton, for one
+//! of the polygons a rectangle).
 //!
 //! Not guaranteed: loops that cross each other are not told from loops that do not.
 
@@ -29,8 +30,8 @@ pub(super) struct Outline {
     pub outer: bool,
 }
 
-/// The same region with no loop beyond the border of the domain; chains come back in the order given, then the new
-/// outlines, as outer loops.
+/// The same region with no loop beyond the border of the domain; chains come back in the order given, then
+/// the new outlines, as outer loops.
 ///
 /// # Errors
 /// A sentence, where nothing of the surface remains or a loop cannot be cut.
@@ -258,8 +259,8 @@ fn split(piece: &Piece, scale: &Scale) -> Result<Vec<Piece>, ReadIssue> {
     Ok(parts)
 }
 
-/// Where a polynomial in Bernstein form changes its sign (or touches zero), in increasing order; nowhere where it
-/// vanishes over a whole interval.
+/// Where a polynomial in Bernstein form changes its sign (or touches zero), in increasing order; nowhere
+/// where it vanishes over a whole interval.
 fn roots(f: &BezierCurve<f64>, a: f64, b: f64, left: u32, found: &mut Vec<f64>) {
     let (low, high) =
         f.points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &c| (l.min(c), h.max(c)));

@@ -1,7 +1,8 @@
 //! Pieces of closed chains as edges of a part.
 //!
-//! A piece along the border of a spline surface becomes the exact curve of its control points there; others are given
-//! as curves on the surface. A piece along one side of a closed surface and the one along the other are one edge.
+//! A piece along the border of a spline surface becomes the exact curve of its control points there; others
+//! are given as curves on the surface. A piece along one side of a closed surface and the one along the other
+//! are one edge.
 
 use super::chain::Chain;
 use super::meet::ONE_PLACE;

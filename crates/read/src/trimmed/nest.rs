@@ -113,7 +113,8 @@ fn is_even(chain: &Chain) -> bool {
     chain.role == Role::ByNesting(Winding::Even)
 }
 
-/// Where the surface's own border is among the loops of the even convention, all others go by the odd one without it.
+/// Where the surface's own border is among the loops of the even convention, all others go by the odd one
+/// without it.
 fn by_the_odd_one(chains: &mut Vec<Chain>, scale: &Scale) -> bool {
     let is_border = |c: &Chain| is_even(c) && !c.winds && covers_domain(&c.polygon(scale), scale);
     let Some(border) = chains.iter().position(is_border) else { return false };

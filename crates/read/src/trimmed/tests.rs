@@ -165,7 +165,8 @@ fn the_even_convention_keeps_what_the_odd_one_drops() {
         found
     };
     assert_eq!(areas(trims.iter().map(even).collect()), [vec![6.0, -5.04], vec![2.64, -0.16, -0.4]]);
-    // One loop is a hole; the border itself as a loop is nothing more, and leaves what is inside the next one.
+    // One loop is a hole; the border itself as a loop is nothing more, and leaves what is inside the next
+    // one.
     assert_eq!(areas(vec![even(&trims[0])]), [vec![6.0, -5.04]]);
     let border = rectangle([0.0, 0.0], [2.0, 3.0]);
     assert_eq!(areas(vec![even(&border), even(&trims[1])]), [vec![2.64]]);

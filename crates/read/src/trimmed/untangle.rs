@@ -1,10 +1,11 @@
 //! Loops that cross, touch or run over each other, as loops that do not: for formats without topology.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 5.1. Chains are cut where they meet ([`meet`]); the boundary of the
-//! region that their winding numbers describe ([`chordal_brep::winding`]) is put together from the cut pieces, which
-//! stay the exact curves of the file.
+//! Source: Balázs, Guthe, Klein 2004, section 5.1. Chains are cut where they meet ([`meet`]); the boundary of
+//! the region that their winding numbers describe ([`chordal_brep::winding`]) is put together from the cut
+//! pieces, which stay the exact curves of the file.
 //!
-//! Which points belong to the face, where a *loop goes round* a point if it winds round it an odd number of times:
+//! Which points belong to the face, where a *loop goes round* a point if it winds round it an odd number of
+//! times:
 //!
 //! | the format | inside |
 //! |---|---|
@@ -12,9 +13,11 @@
 //! | does not; odd convention | as above, where loops cross and run both ways ([`direction`]); else an odd number of loops goes round it |
 //! | does not; even convention | an even number of loops goes round it |
 //!
-//! Chains that meet nowhere but bound the region as they are come back unchanged, so that sound files keep their loops.
+//! Chains that meet nowhere but bound the region as they are come back unchanged, so that sound files keep
+//! their loops.
 //!
-//! Not guaranteed: loops round a period of the surface are left alone, and loops are not compared across its seam.
+//! Not guaranteed: loops round a period of the surface are left alone, and loops are not compared across its
+//! seam.
 
 mod direction;
 
@@ -71,8 +74,8 @@ pub(super) fn untangled(chains: Vec<Chain>, scale: &Scale) -> Untangled {
     Untangled { chains, whole, rebuilt }
 }
 
-/// New chains, whether the region is unbounded, and the number of places where pieces met; `None` where the chains are
-/// right as they are, or nothing better is found.
+/// New chains, whether the region is unbounded, and the number of places where pieces met; `None` where the
+/// chains are right as they are, or nothing better is found.
 fn rebuilt(chains: &[Chain], scale: &Scale) -> Option<(Vec<Chain>, bool, usize)> {
     let flats = flattened(chains, scale);
     let met = meetings(&flats, scale);
@@ -109,7 +112,8 @@ fn rebuilt(chains: &[Chain], scale: &Scale) -> Option<(Vec<Chain>, bool, usize)>
     Some((new, whole, met.crossings + met.touches))
 }
 
-/// True where loops that meet nowhere cannot lie in each other with the same role, nor an outer loop in a hole.
+/// True where loops that meet nowhere cannot lie in each other with the same role, nor an outer loop in a
+/// hole.
 fn are_told_apart(chains: &[Chain], scale: &Scale) -> bool {
     let of = |role: Role| -> Vec<&Chain> { chains.iter().filter(|c| c.role == role).collect() };
     match (&of(Role::Outer)[..], &of(Role::Hole)[..]) {
@@ -206,7 +210,8 @@ impl<'a> Nodes<'a> {
     }
 }
 
-/// The nodes at both ends of each cut; a cut ends where the next one of its chain begins, whatever gap was left.
+/// The nodes at both ends of each cut; a cut ends where the next one of its chain begins, whatever gap was
+/// left.
 fn close(cut: &[Cut<'_>], nodes: &mut Nodes<'_>) -> Vec<[u32; 2]> {
     let starts: Vec<u32> = cut.iter().map(|c| nodes.node(c.at(0.0))).collect();
     let mut ends = Vec::with_capacity(cut.len());
@@ -266,8 +271,8 @@ fn runs_through(cut: &[Cut<'_>], index: usize, p: DVec2, scale: &Scale) -> bool 
     off(0.5 * (low + high)) <= 2.0 * ONE_PLACE
 }
 
-/// True where each chain bounds the region all along, and on the side that its role promises: then nothing is to be
-/// mended.
+/// True where each chain bounds the region all along, and on the side that its role promises: then nothing is
+/// to be mended.
 fn is_as_given(strands: &[Strand], sides: &[[bool; 2]], chains: &[Chain]) -> bool {
     let mut seen: Vec<Option<[bool; 2]>> = vec![None; chains.len()];
     for (strand, &sides) in strands.iter().zip(sides) {

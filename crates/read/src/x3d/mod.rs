@@ -1,7 +1,7 @@
 //! VRML97 with its NURBS amendment, and X3D in the classic and the XML encoding.
 //!
-//! Bytes → [`crate::scene::text`] or [`xml`] (nodes) → [`crate::scene::prototypes`] → [`walk`] (groups, shapes,
-//! appearances), which hands geometry to [`surfaces`] (splines) and [`shapes`] (polygons and solids).
+//! Bytes → [`crate::scene::text`] or [`xml`] (nodes) → [`crate::scene::prototypes`] → [`walk`] (groups,
+//! shapes, appearances), which hands geometry to [`surfaces`] (splines) and [`shapes`] (polygons and solids).
 
 mod curves;
 mod place;

@@ -1,6 +1,7 @@
 //! Spline surfaces and the contours that trim them.
 //!
-//! Control points are already multiplied by their weights, as the standard and its viewers have it: (wx, wy, wz).
+//! Control points are already multiplied by their weights, as the standard and its viewers have it: (wx, wy,
+//! wz).
 
 use super::curves::{curve2, points, weights};
 use super::place::Place;

@@ -1,11 +1,11 @@
 //! Swept and swung surfaces, where they are splines.
 //!
-//! A cross-section swept along a straight trajectory is a ruled spline. Along a bent one the section turns with the
-//! trajectory, and no spline does that exactly: such faces fail with that reason.
+//! A cross-section swept along a straight trajectory is a ruled spline. Along a bent one the section turns
+//! with the trajectory, and no spline does that exactly: such faces fail with that reason.
 //!
-//! A swung surface (Piegl and Tiller, *The NURBS Book*, 10.4) turns a profile in the yz plane about the y axis along a
-//! trajectory in the xz plane that says how far out each direction is: (z·x', y, z·z') for profile points (y, z) and
-//! trajectory points (x', z').
+//! A swung surface (Piegl and Tiller, *The NURBS Book*, 10.4) turns a profile in the yz plane about the y
+//! axis along a trajectory in the xz plane that says how far out each direction is: (z·x', y, z·z') for
+//! profile points (y, z) and trajectory points (x', z').
 
 use super::curves::{curve2, curve3};
 use crate::scene::graph::{Graph, NodeIx};

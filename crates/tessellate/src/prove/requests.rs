@@ -4,8 +4,8 @@ use crate::effort::Setback;
 use crate::face_mesh::FaceMesh;
 use chordal_chart::Segment;
 
-/// Chords with this share of the sagitta of another one are as coarse as that one: chords of equal length on a
-/// circle differ by rounding, and by half where one of them is halved already.
+/// Chords with this share of the sagitta of another one are as coarse as that one: chords of equal length on
+/// a circle differ by rounding, and by half where one of them is halved already.
 const ALIKE: f64 = 0.5;
 
 /// Chords by edge and index.

@@ -1,8 +1,8 @@
 //! Outer loops and holes by the way they run, for loops that cross.
 //!
-//! Open Inventor, X3D and OpenGL keep what lies on the left of a trimming curve: outer loops run one way, holes the
-//! other. Loops that do not cross are told apart by nesting, whichever way they run. Of loops that cross, nesting
-//! says nothing; then the direction counts, if the loops that do not cross agree with it.
+//! Open Inventor, X3D and OpenGL keep what lies on the left of a trimming curve: outer loops run one way,
+//! holes the other. Loops that do not cross are told apart by nesting, whichever way they run. Of loops that
+//! cross, nesting says nothing; then the direction counts, if the loops that do not cross agree with it.
 
 use super::super::chain::Chain;
 use super::super::polygon::{area, contains};
@@ -11,12 +11,12 @@ use super::bounds;
 use crate::Winding;
 use chordal_nurbs::DVec2;
 
-/// A loop whose signed area is not more than this share of the area that all loops lie in runs neither way: it goes
-/// to and fro, or its lobes cancel out.
+/// A loop whose signed area is not more than this share of the area that all loops lie in runs neither way:
+/// it goes to and fro, or its lobes cancel out.
 const NO_DIRECTION: f64 = 1e-9;
 
-/// The role of each chain: by its direction where the chains run both ways and their nesting does not contradict,
-/// else as it is.
+/// The role of each chain: by its direction where the chains run both ways and their nesting does not
+/// contradict, else as it is.
 pub(super) fn roles(chains: &[Chain], scale: &Scale) -> Vec<Role> {
     let given: Vec<Role> = chains.iter().map(|c| c.role).collect();
     if given.iter().any(|role| *role != Role::ByNesting(Winding::Odd)) {

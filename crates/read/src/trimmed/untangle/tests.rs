@@ -87,8 +87,8 @@ fn an_eight_keeps_both_lobes_by_every_convention() {
 
 #[test]
 fn two_loops_that_cross() {
-    // They run opposite ways: what lies on the right of one is cut off. If both run the same way, all that is known is how many
-    // go round a place.
+    // They run opposite ways: what lies on the right of one is cut off. If both run the same way, all that is
+    // known is how many go round a place.
     near(area(&[polygon(&A, ODD), polygon(&B, ODD)]), 0.42);
     let back: Vec<(f64, f64)> = B.iter().rev().copied().collect();
     near(area(&[polygon(&A, ODD), polygon(&back, ODD)]), 0.48 + 0.12 - 2.0 * 0.06);
