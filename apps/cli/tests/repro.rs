@@ -12,6 +12,14 @@ fn codes(input: &Path) -> String {
     ran.stderr
 }
 
+/// Models of the corpus, a face of each, and its problem.
+const PROBLEMS: [(&str, &str, &str); 4] = [
+    ("bad/zero_direction.step", "#185", "unbounded-face"),
+    ("offset_bspline.step", "#363", "unproven-face"),
+    ("touching_loops.step", "#201", "loops-untangled"),
+    ("weight_negative.step", "#61", "unproven-face"),
+];
+
 #[test]
 fn a_piece_shows_the_problem_of_the_face_and_has_no_names() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -42,12 +50,7 @@ fn a_piece_shows_the_problem_of_the_face_and_has_no_names() {
 fn problems_of_meshing_are_shown_by_the_piece() {
     let folder = tempfile::tempdir().expect("a folder");
     let piece = folder.path().join("piece.json");
-    for (name, face, code) in [
-        ("bad/zero_direction.step", "#185", "unbounded-face"),
-        ("offset_bspline.step", "#363", "unproven-face"),
-        ("touching_loops.step", "#201", "loops-untangled"),
-        ("weight_negative.step", "#61", "unproven-face"),
-    ] {
+    for (name, face, code) in PROBLEMS {
         let ran =
             run(&format!("repro {{}} --face {face} -o {{}}"), &[&corpus().join(name), &piece]).exits(&[0]);
         assert!(ran.stderr.contains("1 face; `chordal mesh") && ran.stderr.contains(code), "{}", ran.stderr);
@@ -74,12 +77,7 @@ fn problems_of_meshing_are_shown_by_the_piece() {
 fn a_piece_in_step_shows_the_same_problem() {
     let folder = tempfile::tempdir().expect("a folder");
     let piece = folder.path().join("piece.step");
-    for (name, face, code) in [
-        ("bad/zero_direction.step", "#185", "unbounded-face"),
-        ("offset_bspline.step", "#363", "unproven-face"),
-        ("touching_loops.step", "#201", "loops-untangled"),
-        ("weight_negative.step", "#61", "unproven-face"),
-    ] {
+    for (name, face, code) in PROBLEMS {
         let ran =
             run(&format!("repro {{}} --face {face} -o {{}}"), &[&corpus().join(name), &piece]).exits(&[0]);
         assert!(ran.stderr.contains("`chordal mesh") && ran.stderr.contains(code), "{}", ran.stderr);
