@@ -125,11 +125,18 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
 /// [`ReadError`] where the content cannot be unpacked or is no STEP file.
 pub fn step_excerpt(bytes: &[u8], faces: &[u64]) -> Result<String, ReadError> {
     let bytes = unpack::unpacked(bytes)?;
-    match Format::of(&bytes) {
-        #[cfg(feature = "step")]
-        Some(Format::Step) => Ok(step::excerpt(&bytes, faces)),
-        _ => Err(ReadError::NotStep),
-    }
+    excerpt_of_step(&bytes, faces).ok_or(ReadError::NotStep)
+}
+
+#[cfg(feature = "step")]
+fn excerpt_of_step(bytes: &[u8], faces: &[u64]) -> Option<String> {
+    (Format::of(bytes) == Some(Format::Step)).then(|| step::excerpt(bytes, faces))
+}
+
+/// A build without the reader for STEP knows no STEP file.
+#[cfg(not(feature = "step"))]
+fn excerpt_of_step(_: &[u8], _: &[u64]) -> Option<String> {
+    None
 }
 
 /// Content that no reader knows: often a mesh.
