@@ -5,7 +5,7 @@
 //! it works on the part, so that edges keep their identity for the neighbours, and all later stages get loops
 //! that do not cross:
 //!
-//! 1. [`hits`]: where chords of a face cross in its chart, carried over to the exact curves.
+//! 1. [`meetings`]: where chords of a face cross in its chart, carried over to the exact curves.
 //! 2. [`split`]: both edges are cut there at a new vertex, for all their faces. Edges that coincide between
 //!    the same two vertices become one: where a loop overlaps itself by 1e-7, the face loses two edges, and
 //!    its neighbours meet along the edge that remains.
@@ -23,8 +23,8 @@
 //! Not guaranteed: a face of a closed shell whose region would leave a neighbour's edge open, or run it the
 //! other way round (a bow tie of shared edges), stays as it is in the file, and is reported as not proven.
 
-mod hits;
 mod looseness;
+mod meetings;
 mod rebuild;
 mod split;
 
@@ -35,7 +35,7 @@ use chordal_nurbs::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
 use self::looseness::Looseness;
-pub use hits::loops_cross;
+pub use meetings::loops_cross;
 
 /// A face whose loops cross, with its chart.
 #[derive(Debug)]
@@ -103,7 +103,7 @@ pub fn uncrossed(
     let mut ends = Vec::new();
     let loose = Looseness::of(part, crossed, resolution);
     for one in crossed {
-        meetings.extend(hits::meetings(one.context, &one.chart, &loose, tolerance));
+        meetings.extend(meetings::meetings(one.context, &one.chart, &loose, tolerance));
         ends.push(meetings.len());
     }
     let mut new = part.clone();

@@ -22,7 +22,7 @@ use crate::snap::{Grid, settled};
 use crate::trimmed_face::{OpenLoop, TrimmedFace};
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{BoxSide, DVec2, DVec3, UvBox, work};
-use cuts::{Side, hold_beside};
+use cuts::{Side, move_into_strip};
 use std::collections::BTreeMap;
 use winding::seam_beside;
 
@@ -365,7 +365,7 @@ impl Unroll<'_, '_> {
             winding[axis] = 1;
             let mut a = OpenLoop { points, winding, outer: true };
             let step = along_axis(across, period);
-            hold_beside(holes, &a, turn, step);
+            move_into_strip(holes, &a, turn, step);
             let points = shifted(&a.points, step);
             let mut b = OpenLoop { points, ..a.clone() };
             let first = if axis == 0 { &mut b } else { &mut a };

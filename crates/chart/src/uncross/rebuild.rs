@@ -45,7 +45,7 @@ pub(super) fn loops(
             if forward { [edge.start, edge.end] } else { [edge.end, edge.start] }
         });
         let piece = match run.piece {
-            Some((id, forward)) => match pieces.standing_for(id) {
+            Some((id, forward)) => match pieces.replacement(id) {
                 Some((stands, same_way)) => Some((stands, forward == same_way)),
                 None => continue,
             },

@@ -1,4 +1,5 @@
-//! Edges cut where they meet others, for all faces that use them; edges that lie on each other become one.
+//! Divides edges at the places where they meet, for all faces that use them. Edges that coincide between the
+//! same two vertices are replaced by one of them.
 
 use super::Meeting;
 use super::looseness::Looseness;
@@ -6,42 +7,43 @@ use chordal_brep::{Coedge, Edge, EdgeId, Loop, Part, Pcurve, Vertex, VertexId};
 use chordal_nurbs::{Curve, CurveInverter, DVec3, Range};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What became of the edges of a part.
+/// Which edges replace the edges of a part after the division.
 pub(super) struct Pieces {
-    /// The vertex of each meeting.
+    /// The vertex at each meeting, in the order of the meetings.
     pub vertices: Vec<VertexId>,
-    /// Per edge of the part before, its cuts in increasing order.
+    /// For each divided edge, the parameters at which it is divided, in increasing order.
     cuts: BTreeMap<u32, Vec<f64>>,
-    /// Per edge of the part before that was cut, its pieces in order.
+    /// For each divided edge, its pieces in the order of the parameter.
     ids: BTreeMap<u32, Vec<EdgeId>>,
-    /// Edges that another one stands for, and whether that one runs the same way.
+    /// For each edge that is replaced by a coincident one: that edge, and whether both have the same
+    /// direction.
     merged: BTreeMap<u32, (EdgeId, bool)>,
-    /// Edges shorter than the resolution, that are one point.
-    gone: Vec<EdgeId>,
+    /// Closed edges shorter than the resolution; they are removed from the loops.
+    removed: Vec<EdgeId>,
 }
 
 impl Pieces {
-    /// The cuts of an edge between two parameters, in increasing order.
+    /// The parameters at which an edge is divided, in increasing order.
     pub(super) fn cuts(&self, edge: u32) -> &[f64] {
         self.cuts.get(&edge).map_or(&[], Vec::as_slice)
     }
 
-    /// The piece of an edge that a parameter lies on, before edges were merged.
+    /// The piece of an edge that contains a parameter, before coincident edges are replaced.
     pub(super) fn piece(&self, edge: u32, t: f64) -> EdgeId {
         let index = self.cuts(edge).iter().filter(|&&cut| cut < t).count();
         self.ids.get(&edge).map_or(EdgeId(edge), |ids| ids[index])
     }
 
-    /// The edge that stands for another, whether it runs the same way; `None` for one that is a point.
-    pub(super) fn standing_for(&self, edge: EdgeId) -> Option<(EdgeId, bool)> {
-        if self.gone.contains(&edge) {
+    /// The edge that replaces an edge, and whether both have the same direction; `None` for a removed edge.
+    pub(super) fn replacement(&self, edge: EdgeId) -> Option<(EdgeId, bool)> {
+        if self.removed.contains(&edge) {
             return None;
         }
         Some(self.merged.get(&edge.0).copied().unwrap_or((edge, true)))
     }
 
-    /// A coedge along what became of its edge.
-    fn renewed(&self, coedge: &Coedge, part: &Part) -> Vec<Coedge> {
+    /// The coedges that replace a coedge, along the pieces of its edge.
+    fn coedges_for(&self, coedge: &Coedge, part: &Part) -> Vec<Coedge> {
         let Some(ids) = self.ids.get(&coedge.edge.0) else {
             return self.coedge(coedge.edge, coedge.forward, coedge.pcurves.clone()).into_iter().collect();
         };
@@ -59,16 +61,17 @@ impl Pieces {
         pieces
     }
 
-    /// A coedge along the edge that stands for this one.
+    /// A coedge along the edge that replaces `edge`.
     pub(super) fn coedge(&self, edge: EdgeId, forward: bool, pcurves: Vec<Pcurve>) -> Option<Coedge> {
-        let (stands, same_way) = self.standing_for(edge)?;
-        // Another curve's parameters are no good for this one.
-        let pcurves = if stands == edge { pcurves } else { Vec::new() };
-        Some(Coedge { edge: stands, forward: forward == same_way, pcurves })
+        let (replaced, same_way) = self.replacement(edge)?;
+        // Parameter curves belong to the parameters of one edge curve, so those of a replaced edge are
+        // dropped.
+        let pcurves = if replaced == edge { pcurves } else { Vec::new() };
+        Some(Coedge { edge: replaced, forward: forward == same_way, pcurves })
     }
 }
 
-/// Parameter curves of a whole edge, narrowed to a piece of it.
+/// The parts of an edge's parameter curves that belong to one piece of the edge.
 pub(super) fn narrowed(pcurves: &[Pcurve], whole: Range, piece: Range) -> Vec<Pcurve> {
     let one = |pcurve: &Pcurve| {
         let at = |t: f64| pcurve.range.start + (t - whole.start) / whole.length() * pcurve.range.length();
@@ -77,18 +80,18 @@ pub(super) fn narrowed(pcurves: &[Pcurve], whole: Range, piece: Range) -> Vec<Pc
     pcurves.iter().map(one).collect()
 }
 
-/// Cuts the edges of a part where they meet.
+/// Divides the edges of a part at the meetings.
 pub(super) fn split(part: &mut Part, meetings: &[Meeting], loose: &Looseness) -> Pieces {
     let resolution = loose.resolution;
-    let stands = join_vertices(part, meetings, resolution);
-    let mut wanted: BTreeMap<u32, Vec<(f64, VertexId)>> = BTreeMap::new();
+    let replaced = join_vertices(part, meetings, resolution);
+    let mut divisions: BTreeMap<u32, Vec<(f64, VertexId)>> = BTreeMap::new();
     let old = part.vertices.len();
     let mut vertices = Vec::with_capacity(meetings.len());
     for meeting in meetings {
-        let vertex = standing(&stands, vertex_of(part, meeting, old, resolution));
+        let vertex = current(&replaced, vertex_of(part, meeting, old, resolution));
         vertices.push(vertex);
         for stop in &meeting.stops {
-            wanted.entry(stop.edge).or_default().push((stop.t, vertex));
+            divisions.entry(stop.edge).or_default().push((stop.t, vertex));
         }
     }
     let mut pieces = Pieces {
@@ -96,9 +99,9 @@ pub(super) fn split(part: &mut Part, meetings: &[Meeting], loose: &Looseness) ->
         cuts: BTreeMap::new(),
         ids: BTreeMap::new(),
         merged: BTreeMap::new(),
-        gone: Vec::new(),
+        removed: Vec::new(),
     };
-    for (edge, stops) in wanted {
+    for (edge, stops) in divisions {
         cut_edge(part, edge, stops, loose, &mut pieces);
     }
     merge(part, &mut pieces, loose);
@@ -106,7 +109,7 @@ pub(super) fn split(part: &mut Part, meetings: &[Meeting], loose: &Looseness) ->
     for face in &mut faces {
         for a_loop in &mut face.loops {
             if let Loop::Edges { coedges, .. } = a_loop {
-                *coedges = coedges.iter().flat_map(|coedge| pieces.renewed(coedge, part)).collect();
+                *coedges = coedges.iter().flat_map(|coedge| pieces.coedges_for(coedge, part)).collect();
             }
         }
     }
@@ -114,11 +117,12 @@ pub(super) fn split(part: &mut Part, meetings: &[Meeting], loose: &Looseness) ->
     pieces
 }
 
-/// Makes vertices one that meet within the resolution, unless an edge runs from one to the other.
+/// Unites vertices that coincide within the resolution, unless an edge connects them. The result maps each
+/// vertex to the one that replaces it.
 fn join_vertices(part: &mut Part, meetings: &[Meeting], resolution: f64) -> BTreeMap<VertexId, VertexId> {
     let joined: BTreeSet<[VertexId; 2]> =
         part.edges.iter().map(|e| [e.start.min(e.end), e.start.max(e.end)]).collect();
-    let mut stands: BTreeMap<VertexId, VertexId> = BTreeMap::new();
+    let mut replaced: BTreeMap<VertexId, VertexId> = BTreeMap::new();
     for meeting in meetings {
         let Some(vertex) = meeting.vertex else { continue };
         for stop in &meeting.stops {
@@ -126,34 +130,34 @@ fn join_vertices(part: &mut Part, meetings: &[Meeting], resolution: f64) -> BTre
             let Some(curve) = edge.curve.as_deref() else { continue };
             for (t, end) in [(edge.range.start, edge.start), (edge.range.end, edge.end)] {
                 let apart = part.vertices[end.index()].point.distance(meeting.point);
-                let [a, b] = [vertex, end].map(|v| standing(&stands, v));
+                let [a, b] = [vertex, end].map(|v| current(&replaced, v));
                 let (a, b) = (a.min(b), a.max(b));
                 if a != b
                     && apart <= resolution
-                    && is_still(curve, stop.t, t, resolution)
+                    && stays_within(curve, stop.t, t, resolution)
                     && !joined.contains(&[a, b])
                 {
-                    stands.insert(b, a);
+                    replaced.insert(b, a);
                 }
             }
         }
     }
     for edge in &mut part.edges {
-        edge.start = standing(&stands, edge.start);
-        edge.end = standing(&stands, edge.end);
+        edge.start = current(&replaced, edge.start);
+        edge.end = current(&replaced, edge.end);
     }
-    stands
+    replaced
 }
 
-/// The vertex that stands for another.
-fn standing(stands: &BTreeMap<VertexId, VertexId>, mut vertex: VertexId) -> VertexId {
-    while let Some(&next) = stands.get(&vertex) {
+/// The vertex that replaces a vertex, or the vertex itself.
+fn current(replaced: &BTreeMap<VertexId, VertexId>, mut vertex: VertexId) -> VertexId {
+    while let Some(&next) = replaced.get(&vertex) {
         vertex = next;
     }
     vertex
 }
 
-/// The vertex at a meeting: one that is there already, or a new one.
+/// The vertex at a meeting: an existing one within the resolution, else a new one.
 fn vertex_of(part: &mut Part, meeting: &Meeting, old: usize, resolution: f64) -> VertexId {
     if let Some(vertex) = meeting.vertex {
         return vertex;
@@ -172,7 +176,7 @@ fn vertex_of(part: &mut Part, meeting: &Meeting, old: usize, resolution: f64) ->
     VertexId::from(part.vertices.len() - 1)
 }
 
-/// Cuts one edge; cuts that leave a piece without length are left out.
+/// Divides one edge. Divisions that would make a piece without length are omitted.
 fn cut_edge(
     part: &mut Part,
     index: u32,
@@ -184,9 +188,10 @@ fn cut_edge(
     let edge = part.edges[index as usize].clone();
     let Some(curve) = edge.curve.as_deref() else { return };
     stops.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    // Where a hook at an end is cut off, what else is met along it is of no account.
+    // An edge may run past its end vertex and come back (a hook). The hook is removed, with all divisions on
+    // it.
     let hooks_back = |stop: &(f64, VertexId), vertex: VertexId, end: f64| {
-        stop.1 == vertex && is_still(curve, stop.0, end, loose.of_hook(index))
+        stop.1 == vertex && stays_within(curve, stop.0, end, loose.of_hook(index))
     };
     if let Some(last) = stops.iter().rposition(|stop| hooks_back(stop, edge.start, edge.range.start)) {
         stops.drain(..last);
@@ -197,14 +202,14 @@ fn cut_edge(
     let mut kept: Vec<(f64, VertexId)> = vec![(edge.range.start, edge.start)];
     for (t, vertex) in stops {
         let (before, at) = kept[kept.len() - 1];
-        if vertex == at && is_still(curve, before, t, resolution) || t <= before || t >= edge.range.end {
+        if vertex == at && stays_within(curve, before, t, resolution) || t <= before || t >= edge.range.end {
             continue;
         }
         kept.push((t, vertex));
     }
     while kept.len() > 1 {
         let (t, vertex) = kept[kept.len() - 1];
-        if vertex != edge.end || !is_still(curve, t, edge.range.end, resolution) {
+        if vertex != edge.end || !stays_within(curve, t, edge.range.end, resolution) {
             break;
         }
         kept.pop();
@@ -221,7 +226,7 @@ fn cut_edge(
             end: pair[1].1,
             ..edge.clone()
         };
-        // The first piece keeps the edge's place.
+        // The first piece keeps the index of the edge.
         if k == 0 {
             part.edges[index as usize] = piece;
             ids.push(EdgeId(index));
@@ -234,13 +239,13 @@ fn cut_edge(
     pieces.ids.insert(index, ids);
 }
 
-/// True where a curve stays within the resolution between two parameters.
-pub(super) fn is_still(curve: &Curve, a: f64, b: f64, resolution: f64) -> bool {
+/// True if a curve stays within the resolution of its point at `a`, from `a` to `b`, at four samples.
+pub(super) fn stays_within(curve: &Curve, a: f64, b: f64, resolution: f64) -> bool {
     let start = curve.point(a);
     (1..=4).all(|k| curve.point(a + (b - a) * f64::from(k) / 4.0).distance(start) <= resolution)
 }
 
-/// Finds pieces that lie on other edges between the same vertices, and pieces that are points.
+/// Finds the pieces that coincide with another edge between the same vertices, and those without length.
 fn merge(part: &Part, pieces: &mut Pieces, loose: &Looseness) {
     let whole: BTreeMap<EdgeId, u32> =
         pieces.ids.iter().flat_map(|(&edge, ids)| ids.iter().map(move |&id| (id, edge))).collect();
@@ -261,13 +266,13 @@ fn merge(part: &Part, pieces: &mut Pieces, loose: &Looseness) {
             let edge = &part.edges[one.index()];
             let Some(curve) = edge.curve.as_deref() else { continue };
             if edge.start == edge.end
-                && is_still(curve, edge.range.start, edge.range.end, loose.of_hook(of_whole(one)))
+                && stays_within(curve, edge.range.start, edge.range.end, loose.of_hook(of_whole(one)))
             {
-                pieces.gone.push(one);
+                pieces.removed.push(one);
                 continue;
             }
             let same = group[..k].iter().find_map(|&other| {
-                let is_free = !pieces.merged.contains_key(&other.0) && !pieces.gone.contains(&other);
+                let is_free = !pieces.merged.contains_key(&other.0) && !pieces.removed.contains(&other);
                 let apart = loose.between(of_whole(one), of_whole(other));
                 let same_way = is_free.then(|| lies_on(edge, &part.edges[other.index()], apart)).flatten();
                 same_way.map(|same_way| (other, same_way))
@@ -279,10 +284,12 @@ fn merge(part: &Part, pieces: &mut Pieces, loose: &Looseness) {
     }
 }
 
-/// Edges shorter than so many times what they may lie apart have no direction of their own.
-const SHORT: f64 = 4.0;
+/// Edges shorter than this many times the distance within which edges coincide are united without a test of
+/// shape: the distance hides their direction. A larger value would unite edges that bound a sliver.
+const SHORT_EDGE: f64 = 4.0;
 
-/// Whether an edge lies on another one between the same two vertices, and then whether both run the same way.
+/// `Some` if an edge coincides with another one between the same two vertices, within the distance `apart`:
+/// true if both have the same direction.
 fn lies_on(one: &Edge, other: &Edge, apart: f64) -> Option<bool> {
     let (a, b) = (one.curve.as_deref()?, other.curve.as_deref()?);
     let at = |k: u32| one.range.start + one.range.length() * f64::from(k) / 8.0;
@@ -290,7 +297,8 @@ fn lies_on(one: &Edge, other: &Edge, apart: f64) -> Option<bool> {
     let found: Vec<(f64, DVec3)> =
         (1..8).map(|k| (inverter.invert(a.point(at(k)), None).t, a.point(at(k)))).collect();
     let near = found.iter().all(|(t, p)| b.point(*t).distance(*p) <= apart);
-    // Both are short of being the same stretch where one goes round and the other does not.
+    // Of two coincident edges, the parameters of the closest points increase or decrease monotonically. If
+    // one edge goes round a closed curve and the other does not, they do neither.
     let rises = found.windows(2).all(|pair| pair[1].0 > pair[0].0);
     let falls = found.windows(2).all(|pair| pair[1].0 < pair[0].0);
     if one.start != one.end && is_short(one, a, apart) && is_short(other, b, apart) {
@@ -300,5 +308,5 @@ fn lies_on(one: &Edge, other: &Edge, apart: f64) -> Option<bool> {
 }
 
 fn is_short(edge: &Edge, curve: &Curve, apart: f64) -> bool {
-    is_still(curve, edge.range.start, edge.range.end, SHORT * apart)
+    stays_within(curve, edge.range.start, edge.range.end, SHORT_EDGE * apart)
 }

@@ -1,29 +1,29 @@
-//! Where to cut a closed surface open: a chain of straight pieces between vertices that see each other.
+//! Finds where to cut a closed surface open: along a chain of straight bridges between vertices.
 //!
-//! A face that goes all round a closed direction becomes a polygon when it is cut from its one side to the
-//! other. With holes all round, no straight cut passes between them. Then the cut leads through holes: it
-//! enters the loop of a hole at one vertex and leaves it at another, and the hole's own sides become sides of
-//! the polygon.
+//! A face that encircles a closed direction becomes a polygon when it is cut from its lower border to its
+//! upper border. If holes block every straight cut, the cut passes through holes: one bridge ends at a vertex
+//! of the hole's loop, the next begins at another vertex of it, and the sides of the hole become sides of the
+//! polygon.
 //!
 //! ```text
 //!   ────────────b──────        upper side: a loop, or a pole line
-//!               │ hop
+//!               │ bridge
 //!          ┌────q──┐
 //!          │ hole  │
 //!          └──p────┘
-//!             │ hop
+//!             │ bridge
 //!   ──────────a────────        lower side
 //! ```
 //!
-//! Notation: `turn` is the vector of the chart that leads once round; a place and the place one turn on are
-//! the same place of the surface. A hop is blocked where it crosses a side of any loop, in any turn, or
-//! passes through a vertex.
+//! Notation: `turn` is the period vector of the chart: p and p + turn are the same point of the surface.
+//! `step` is the second period vector of a surface that is closed in both directions. A bridge is blocked if
+//! it crosses a side of a loop, in any period, or passes through a vertex.
 //!
-//! Steps: a shortest path (Dijkstra) over the loops, from the lower side to the upper one. Lengths are taken
-//! in space, by the derivatives at one place, and squared, so that the cut prefers many short hops to a long
-//! one.
+//! Method: a shortest path (Dijkstra) whose nodes are the loops, from the lower border to the upper one. The
+//! cost of a bridge is its squared length in space, by the derivatives at one point of the face: many short
+//! bridges cost less than a long one.
 //!
-//! Not guaranteed: where loops cross each other, there may be no such chain.
+//! Not guaranteed: if loops cross each other, there may be no chain.
 
 use super::area;
 use crate::keys::ChartPoint;
@@ -32,73 +32,76 @@ use chordal_nurbs::{DVec2, work};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Hops between two loops that are tried before longer ones are: nearly always the shortest one is free.
-const NEAREST: usize = 64;
+/// The number of shortest bridges between two loops that the first search considers. Nearly always the
+/// shortest is free; a larger number only costs time.
+const NEAREST_IN_FIRST_SEARCH: usize = 64;
 
-/// Hops that are tried between two loops where the shortest ones are blocked.
-const NEAREST_AT_LAST: usize = 20_000;
+/// The same for the second search, which runs if the first finds no chain.
+const NEAREST_IN_SECOND_SEARCH: usize = 20_000;
 
-/// Loops with more vertices than this are entered and left at so many of them only.
-const DOORS: usize = 400;
+/// Bridges begin and end at this many vertices of a loop at most, evenly distributed. The number of
+/// candidates between two loops is bounded by its square.
+const MOST_BRIDGE_VERTICES: usize = 400;
 
-/// A vertex nearer to a hop than this part of a turn blocks it: what is left between them would be a sliver.
+/// A vertex blocks a bridge if it is closer to it than this fraction of a period. A smaller value admits
+/// slivers between bridge and vertex.
 const CLEARANCE: f64 = 1e-9;
 
-/// One side of the face, that a cut leads to.
+/// The lower or the upper border of the face.
 #[derive(Clone, Copy)]
 pub(super) enum Side<'a> {
-    /// A loop that winds once round.
+    /// A loop that encircles the closed direction once.
     Loop(&'a OpenLoop),
-    /// The pole line at this value of the parameter across.
+    /// A pole, at this value of the other parameter.
     Pole(f64),
 }
 
-/// An end of a hop.
+/// An end of a bridge.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stop {
-    /// 0: the lower side; i: hole i − 1; behind the holes: the upper side.
+pub(super) struct BridgeEnd {
+    /// 0 is the lower border, i is hole i − 1, and the last is the upper border.
     pub node: usize,
-    /// The point of its loop.
+    /// The index of the vertex in its loop.
     pub index: usize,
     pub uv: DVec2,
 }
 
-/// A straight piece of a cut.
+/// A straight part of a cut, between two vertices.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hop {
-    pub from: Stop,
-    pub to: Stop,
+pub(super) struct Bridge {
+    pub from: BridgeEnd,
+    pub to: BridgeEnd,
 }
 
-/// The face between two sides.
+/// A face between two borders, to be cut open.
 pub(super) struct Cuts<'a> {
     sides: [Side<'a>; 2],
     holes: &'a [OpenLoop],
-    /// The closed direction, 0 for u.
+    /// The closed direction: 0 for u, 1 for v.
     axis: usize,
     turn: DVec2,
-    /// Lengths in space of steps in u and v.
+    /// Lengths in space of unit vectors in u and v.
     lengths: DVec2,
-    walls: Vec<Wall>,
-    /// Holes i and i + `count` are the same, elsewhere.
+    obstacles: Vec<Obstacle>,
+    /// The number of different holes: hole i + `count` is hole i, moved by a period.
     count: usize,
 }
 
-/// The search for a cut ends after so many comparisons of hops with sides, most of which the boxes of loops
-/// settle: about half a second at most.
+/// A search ends after this many comparisons of bridges with sides, which take half a second at most, as the
+/// boxes of loops decide most of them. A face whose search ends early fails.
 const MOST_COMPARISONS: usize = 200_000_000;
 
-/// Loops that run further across a closed surface than so many steps are not compared with all of their own
-/// repetitions.
+/// The number of repetitions of each loop across a surface closed in both directions, to either side. Bridges
+/// are not tested against copies further away, so loops longer than this many periods may be crossed.
 const MOST_STEPS: f64 = 16.0;
 
-/// Hops that are tested however many sides there are.
+/// A search tests this many bridges at least, however many sides the loops have.
 const LEAST_TESTS: usize = 256;
 
-/// The points of a loop in lengths, the first one repeated at the end.
-struct Wall {
+/// A loop that bridges must not cross. Its points are scaled to lengths; the first is repeated at the end.
+struct Obstacle {
     points: Vec<DVec2>,
-    /// The turns that it reaches over.
+    /// Its extent along `turn`, in periods.
     from: f64,
     to: f64,
     /// Its box.
@@ -106,32 +109,32 @@ struct Wall {
     high: DVec2,
 }
 
-impl Wall {
+impl Obstacle {
     fn new(points: Vec<DVec2>, turn: DVec2) -> Self {
-        let mut wall = Self {
+        let mut obstacle = Self {
             points,
             from: f64::INFINITY,
             to: f64::NEG_INFINITY,
             low: DVec2::INFINITY,
             high: DVec2::NEG_INFINITY,
         };
-        for &p in &wall.points {
+        for &p in &obstacle.points {
             let turns = p.dot(turn) / turn.length_squared();
-            (wall.from, wall.to) = (wall.from.min(turns), wall.to.max(turns));
-            (wall.low, wall.high) = (wall.low.min(p), wall.high.max(p));
+            (obstacle.from, obstacle.to) = (obstacle.from.min(turns), obstacle.to.max(turns));
+            (obstacle.low, obstacle.high) = (obstacle.low.min(p), obstacle.high.max(p));
         }
-        wall
+        obstacle
     }
 
-    /// True where one of its sides lies in the way of a hop.
-    fn is_in_the_way(&self, hop: [DVec2; 2], clearance: f64) -> bool {
-        let (low, high) = (hop[0].min(hop[1]) - clearance, hop[0].max(hop[1]) + clearance);
+    /// True if one of its sides blocks a bridge.
+    fn is_in_the_way(&self, bridge: [DVec2; 2], clearance: f64) -> bool {
+        let (low, high) = (bridge[0].min(bridge[1]) - clearance, bridge[0].max(bridge[1]) + clearance);
         let meets = low.cmple(self.high).all() && high.cmpge(self.low).all();
-        meets && self.points.windows(2).any(|side| is_blocked_by(hop, [side[0], side[1]], clearance))
+        meets && self.points.windows(2).any(|side| is_blocked_by(bridge, [side[0], side[1]], clearance))
     }
 }
 
-/// A hop that may be free.
+/// A bridge that has not been tested.
 #[derive(Clone, Copy, PartialEq)]
 struct Candidate {
     cost: f64,
@@ -144,7 +147,7 @@ struct Candidate {
 impl Eq for Candidate {}
 
 impl Ord for Candidate {
-    /// The cheapest is the greatest, as a heap gives the greatest first.
+    /// Reversed by cost, since `BinaryHeap` returns the greatest element first.
     fn cmp(&self, other: &Self) -> Ordering {
         let by_cost = other.cost.total_cmp(&self.cost);
         by_cost.then_with(|| (other.from, other.to).cmp(&(self.from, self.to)))
@@ -157,17 +160,17 @@ impl PartialOrd for Candidate {
     }
 }
 
-/// How a loop was reached.
+/// The cheapest chain to a loop.
 #[derive(Clone, Copy)]
 struct Reached {
     cost: f64,
-    hop: Option<Hop>,
-    /// What leads from the loop's own points to those of the cut.
+    bridge: Option<Bridge>,
+    /// The multiple of the periods by which the loop's points are moved in the chain.
     shift: DVec2,
 }
 
 impl<'a> Cuts<'a> {
-    /// `lengths`: of the derivatives by u and by v at a place of the face.
+    /// `lengths` are those of the derivatives by u and by v at one point of the face.
     pub fn new(
         sides: [Side<'a>; 2],
         holes: &'a [OpenLoop],
@@ -178,40 +181,41 @@ impl<'a> Cuts<'a> {
     ) -> Self {
         let lengths = DVec2::from_array(lengths.to_array().map(|l| if l.is_normal() { l } else { 1.0 }));
         let scaled_turn = turn * lengths;
-        let wall = |open: &OpenLoop| {
+        let obstacle = |open: &OpenLoop| {
             let closing = [0, 1].map(|k| f64::from(open.winding[k]) * periods[k].unwrap_or(0.0));
             let mut points: Vec<DVec2> = open.points.iter().map(|p| p.uv * lengths).collect();
             points.push(points[0] + DVec2::from(closing) * lengths);
-            Wall::new(points, scaled_turn)
+            Obstacle::new(points, scaled_turn)
         };
         let of_side = |side: &Side<'a>| match side {
             Side::Loop(open) => Some(*open),
             Side::Pole(_) => None,
         };
-        let walls = sides.iter().filter_map(of_side).chain(holes).map(wall).collect();
-        Self { sides, holes, axis, turn, lengths, walls, count: holes.len() }
+        let obstacles = sides.iter().filter_map(of_side).chain(holes).map(obstacle).collect();
+        Self { sides, holes, axis, turn, lengths, obstacles, count: holes.len() }
     }
 
-    /// On a surface that is closed across, too, all loops lie in the way one `step` and more on, to either
-    /// side. The first `count` holes are all that there are; the others are the same, elsewhere.
+    /// Repeats the obstacles by multiples of `step`, to either side, for a surface that is closed in both
+    /// directions. `count` is the number of different holes.
     pub fn repeat_across(&mut self, step: DVec2, count: usize) {
-        let holes = self.walls.len() - self.holes.len();
-        self.walls.truncate(holes + count);
+        let holes = self.obstacles.len() - self.holes.len();
+        self.obstacles.truncate(holes + count);
         self.count = count;
         let (turn, step) = (self.turn * self.lengths, step * self.lengths);
         let across = |p: &DVec2| turn.perp_dot(*p) / turn.perp_dot(step);
-        let places = || self.walls.iter().flat_map(|wall| &wall.points).map(across);
+        let places = || self.obstacles.iter().flat_map(|obstacle| &obstacle.points).map(across);
         let (low, high) = places().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
         let far = (high - low).ceil().clamp(1.0, MOST_STEPS) as i64;
-        let moved =
-            |wall: &Wall, step: DVec2| Wall::new(wall.points.iter().map(|&p| p + step).collect(), turn);
+        let moved = |obstacle: &Obstacle, step: DVec2| {
+            Obstacle::new(obstacle.points.iter().map(|&p| p + step).collect(), turn)
+        };
         let steps = (-far..=far).filter(|&k| k != 0).map(|k| step * k as f64);
-        let repeated: Vec<Wall> =
-            steps.flat_map(|step| self.walls.iter().map(move |wall| moved(wall, step))).collect();
-        self.walls.extend(repeated);
+        let repeated: Vec<Obstacle> =
+            steps.flat_map(|step| self.obstacles.iter().map(move |obstacle| moved(obstacle, step))).collect();
+        self.obstacles.extend(repeated);
     }
 
-    /// True where nothing lies between two places.
+    /// True if no loop blocks the straight line between two points.
     pub fn is_free(&self, p_uv: DVec2, q_uv: DVec2) -> bool {
         let (p, q) = (p_uv * self.lengths, q_uv * self.lengths);
         let turn = self.turn * self.lengths;
@@ -219,37 +223,39 @@ impl<'a> Cuts<'a> {
         let clearance = CLEARANCE * turn.length();
         let (s, t) = (p.dot(turn) / square, q.dot(turn) / square);
         let (low, high) = (s.min(t) - CLEARANCE, s.max(t) + CLEARANCE);
-        self.walls.iter().all(|wall| {
-            let first = (low - wall.to).ceil() as i64;
-            let last = (high - wall.from).floor() as i64;
+        self.obstacles.iter().all(|obstacle| {
+            let first = (low - obstacle.to).ceil() as i64;
+            let last = (high - obstacle.from).floor() as i64;
             (first..=last).all(|k| {
                 let by = turn * k as f64;
-                !wall.is_in_the_way([p - by, q - by], clearance)
+                !obstacle.is_in_the_way([p - by, q - by], clearance)
             })
         })
     }
 
-    /// The cheapest chain of free hops from the lower side to the upper one.
-    pub fn chain(&self) -> Option<Vec<Hop>> {
-        [NEAREST, NEAREST_AT_LAST].into_iter().find_map(|nearest| self.search(nearest))
+    /// The cheapest chain of free bridges from the lower border to the upper one.
+    pub fn chain(&self) -> Option<Vec<Bridge>> {
+        [NEAREST_IN_FIRST_SEARCH, NEAREST_IN_SECOND_SEARCH]
+            .into_iter()
+            .find_map(|nearest| self.search(nearest))
     }
 
-    /// Hops that are tested at most: each is compared with every side of every loop.
+    /// The limit of tested bridges: each is compared with every side of every loop.
     fn most_tests(&self) -> usize {
-        let sides: usize = self.walls.iter().map(|wall| wall.points.len()).sum();
+        let sides: usize = self.obstacles.iter().map(|obstacle| obstacle.points.len()).sum();
         (MOST_COMPARISONS / sides.max(1)).max(LEAST_TESTS)
     }
 
-    fn search(&self, nearest: usize) -> Option<Vec<Hop>> {
+    fn search(&self, nearest: usize) -> Option<Vec<Bridge>> {
         let goal = self.holes.len() + 1;
         let mut reached: Vec<Option<Reached>> = vec![None; goal + 1];
-        reached[0] = Some(Reached { cost: 0.0, hop: None, shift: DVec2::ZERO });
+        reached[0] = Some(Reached { cost: 0.0, bridge: None, shift: DVec2::ZERO });
         let mut heap = BinaryHeap::new();
-        self.offer(0, &reached, nearest, &mut heap);
-        let mut left = self.most_tests();
-        let sides = self.walls.iter().map(|wall| wall.points.len() as u64).sum();
+        self.add_bridges_from(0, &reached, nearest, &mut heap);
+        let mut tests_left = self.most_tests();
+        let sides = self.obstacles.iter().map(|obstacle| obstacle.points.len() as u64).sum();
         while let Some(next) = heap.pop() {
-            left = left.checked_sub(1)?;
+            tests_left = tests_left.checked_sub(1)?;
             work::count(sides);
             if work::is_over() {
                 return None;
@@ -258,19 +264,19 @@ impl<'a> Cuts<'a> {
             if reached[node].is_some() || !self.is_free(next.p, next.q) {
                 continue;
             }
-            let stop = |(node, index): (usize, usize), uv: DVec2| Stop { node, index, uv };
-            let hop = Hop { from: stop(next.from, next.p), to: stop(next.to, next.q) };
+            let stop = |(node, index): (usize, usize), uv: DVec2| BridgeEnd { node, index, uv };
+            let bridge = Bridge { from: stop(next.from, next.p), to: stop(next.to, next.q) };
             let shift = self.points(node).map_or(DVec2::ZERO, |points| next.q - points[next.to.1].uv);
-            reached[node] = Some(Reached { cost: next.cost, hop: Some(hop), shift });
+            reached[node] = Some(Reached { cost: next.cost, bridge: Some(bridge), shift });
             if node == goal {
                 return Some(chain_to(goal, &reached));
             }
-            self.offer(node, &reached, nearest, &mut heap);
+            self.add_bridges_from(node, &reached, nearest, &mut heap);
         }
         None
     }
 
-    /// The points of a node that is a loop.
+    /// The points of a node; `None` for a pole.
     fn points(&self, node: usize) -> Option<&'a [ChartPoint]> {
         let side = |side: Side<'a>| match side {
             Side::Loop(open) => Some(open.points.as_slice()),
@@ -283,8 +289,8 @@ impl<'a> Cuts<'a> {
         }
     }
 
-    /// Adds the hops from a node to all nodes that are not reached.
-    fn offer(
+    /// Adds the bridges from a node to all nodes without a chain.
+    fn add_bridges_from(
         &self,
         node: usize,
         reached: &[Option<Reached>],
@@ -293,35 +299,35 @@ impl<'a> Cuts<'a> {
     ) {
         let Some(own) = reached[node] else { return };
         for other in (1..reached.len()).filter(|&k| k != node && reached[k].is_none()) {
-            // A piece of the face within a hole lies on no way across the face.
+            // An outer loop inside a hole bounds an island, which no chain can pass.
             let is_hole = other <= self.holes.len();
             if is_hole && (area(&self.holes[other - 1].points) > 0.0 || self.is_passed(other, node, reached))
             {
                 continue;
             }
-            let mut hops = self.hops(node, &own, other);
-            if hops.len() > nearest {
-                hops.select_nth_unstable_by(nearest, |a, b| b.cmp(a));
-                hops.truncate(nearest);
+            let mut bridges = self.bridges(node, &own, other);
+            if bridges.len() > nearest {
+                bridges.select_nth_unstable_by(nearest, |a, b| b.cmp(a));
+                bridges.truncate(nearest);
             }
-            heap.extend(hops);
+            heap.extend(bridges);
         }
     }
 
-    /// True where a hole is, elsewhere, on the way to a node: a cut leads through each hole once.
+    /// True if the chain to a node passes through a copy of a hole: a cut passes through each hole once.
     fn is_passed(&self, hole: usize, node: usize, reached: &[Option<Reached>]) -> bool {
         if self.count == self.holes.len() {
             return false;
         }
         let same = |node: usize| (node.wrapping_sub(1)) % self.count == (hole - 1) % self.count;
-        let way = std::iter::successors(Some(node), |&at| Some(reached[at]?.hop?.from.node));
+        let way = std::iter::successors(Some(node), |&at| Some(reached[at]?.bridge?.from.node));
         way.take_while(|&at| at > 0).any(same)
     }
 
-    /// All hops from one node to another.
-    fn hops(&self, node: usize, own: &Reached, other: usize) -> Vec<Candidate> {
+    /// All bridges from one node to another.
+    fn bridges(&self, node: usize, own: &Reached, other: usize) -> Vec<Candidate> {
         let across = 1 - self.axis;
-        let entry = own.hop.map(|hop| hop.to.index);
+        let entry = own.bridge.map(|bridge| bridge.to.index);
         let candidate = |i: usize, j: usize, p: DVec2, q: DVec2| Candidate {
             cost: own.cost + ((q - p) * self.lengths).length_squared(),
             from: (node, i),
@@ -336,19 +342,19 @@ impl<'a> Cuts<'a> {
         };
         match (self.points(node), self.points(other)) {
             (Some(from), Some(to)) => {
-                let mut hops = Vec::new();
-                for i in doors(from).filter(|&i| entry != Some(i) || from.len() == 1) {
+                let mut bridges = Vec::new();
+                for i in bridge_vertices(from).filter(|&i| entry != Some(i) || from.len() == 1) {
                     let p = from[i].uv + own.shift;
-                    for j in doors(to) {
-                        let q = to[j].uv - self.turn * whole_turns(to[j].uv - p, self.turn);
-                        hops.push(candidate(i, j, p, q));
+                    for j in bridge_vertices(to) {
+                        let q = to[j].uv - self.turn * nearest_period(to[j].uv - p, self.turn);
+                        bridges.push(candidate(i, j, p, q));
                     }
                 }
-                hops
+                bridges
             }
             (Some(from), None) => {
                 let Side::Pole(value) = self.sides[1] else { return Vec::new() };
-                let indices = doors(from).filter(|&i| entry != Some(i) || from.len() == 1);
+                let indices = bridge_vertices(from).filter(|&i| entry != Some(i) || from.len() == 1);
                 indices
                     .map(|i| {
                         candidate(i, 0, from[i].uv + own.shift, straight_to(from[i].uv + own.shift, value))
@@ -357,31 +363,31 @@ impl<'a> Cuts<'a> {
             }
             (None, Some(to)) => {
                 let Side::Pole(value) = self.sides[0] else { return Vec::new() };
-                doors(to).map(|j| candidate(0, j, straight_to(to[j].uv, value), to[j].uv)).collect()
+                bridge_vertices(to).map(|j| candidate(0, j, straight_to(to[j].uv, value), to[j].uv)).collect()
             }
             (None, None) => Vec::new(),
         }
     }
 }
 
-/// The vertices at which a loop may be entered and left.
-fn doors(points: &[ChartPoint]) -> impl Iterator<Item = usize> + use<> {
-    (0..points.len()).step_by(points.len().div_ceil(DOORS).max(1))
+/// The vertices of a loop at which bridges may begin and end.
+fn bridge_vertices(points: &[ChartPoint]) -> impl Iterator<Item = usize> + use<> {
+    (0..points.len()).step_by(points.len().div_ceil(MOST_BRIDGE_VERTICES).max(1))
 }
 
-fn chain_to(goal: usize, reached: &[Option<Reached>]) -> Vec<Hop> {
+fn chain_to(goal: usize, reached: &[Option<Reached>]) -> Vec<Bridge> {
     let mut chain = Vec::new();
     let mut node = goal;
-    while let Some(hop) = reached[node].and_then(|r| r.hop) {
-        chain.push(hop);
-        node = hop.from.node;
+    while let Some(bridge) = reached[node].and_then(|r| r.bridge) {
+        chain.push(bridge);
+        node = bridge.from.node;
     }
     chain.reverse();
     chain
 }
 
-/// True where a side of a loop lies in the way of a hop: crosses it, or has an end on it that is not an end
-/// of the hop.
+/// True if a side of a loop blocks a bridge: the side crosses it, or an end of the side lies on the bridge
+/// and is not an end of the bridge.
 fn is_blocked_by([p, q]: [DVec2; 2], [a, b]: [DVec2; 2], clearance: f64) -> bool {
     let (low, high) = (p.min(q) - clearance, p.max(q) + clearance);
     if a.max(b).cmplt(low).any() || a.min(b).cmpgt(high).any() {
@@ -405,14 +411,14 @@ fn distance_to_segment(x: DVec2, p: DVec2, q: DVec2) -> f64 {
     x.distance(p + d * t)
 }
 
-/// The whole number of turns nearest to a vector.
-pub(super) fn whole_turns(d: DVec2, turn: DVec2) -> f64 {
+/// The number of periods closest to a vector.
+pub(super) fn nearest_period(d: DVec2, turn: DVec2) -> f64 {
     (d.dot(turn) / turn.length_squared()).round()
 }
 
-/// Moves holes by whole `step`s across to where the face lies: between the loop `a`, which goes on by whole
-/// `turn`s, and the same loop one step on.
-pub(super) fn hold_beside(holes: &mut [OpenLoop], a: &OpenLoop, turn: DVec2, step: DVec2) {
+/// Moves each hole by a multiple of `step` into the face: the strip between the loop `a`, continued by
+/// multiples of `turn`, and its copy one `step` further.
+pub(super) fn move_into_strip(holes: &mut [OpenLoop], a: &OpenLoop, turn: DVec2, step: DVec2) {
     let border = Border::new(a, turn, step);
     for hole in holes {
         let by = border.steps_into(hole);
@@ -422,17 +428,17 @@ pub(super) fn hold_beside(holes: &mut [OpenLoop], a: &OpenLoop, turn: DVec2, ste
     }
 }
 
-/// A loop that goes on by whole turns, in coordinates of turns and steps.
+/// A periodic loop, in coordinates along `turn` and `step`.
 struct Border {
     turn: DVec2,
     step: DVec2,
-    /// The points, the first one repeated one turn on.
+    /// The points of one period, and the first point of the next.
     points: Vec<DVec2>,
     middle: f64,
 }
 
-/// Steps to either side of where the middle of a hole lies that are tried: borders that run far forwards and
-/// back have their middle elsewhere.
+/// How many steps to either side of the mean position of a hole are tried. The mean position of a border that
+/// folds back on itself may lie outside the strip that the border bounds there.
 const STEPS_ASIDE: i32 = 4;
 
 impl Border {
@@ -444,12 +450,12 @@ impl Border {
         border
     }
 
-    /// A place in turns and steps.
+    /// A point in coordinates along `turn` and `step`.
     fn place(&self, p_uv: DVec2) -> DVec2 {
         DVec2::new(p_uv.perp_dot(self.step), self.turn.perp_dot(p_uv)) / self.turn.perp_dot(self.step)
     }
 
-    /// How many steps a hole lies beyond the strip between the border and the next one.
+    /// The number of steps from the strip behind the border to the strip with most of the hole's points.
     fn steps_into(&self, hole: &OpenLoop) -> f64 {
         let places: Vec<DVec2> = hole.points.iter().map(|p| self.place(p.uv)).collect();
         let mean = places.iter().map(|p| p.y).sum::<f64>() / places.len() as f64;
@@ -466,12 +472,13 @@ impl Border {
         tried.find(|&by| beside(by)).unwrap_or(guess)
     }
 
-    /// True where the border lies between a place and what is far behind it.
+    /// True if the point lies beyond the border: the ray from it against `step` crosses the border an odd
+    /// number of times.
     fn is_beyond(&self, p: DVec2) -> bool {
         let crossings = self.points.windows(2).map(|side| {
             let (a, b) = (side[0], side[1]);
             let (low, high) = (a.x.min(b.x), a.x.max(b.x));
-            // Turns k with low + k <= p.x < high + k.
+            // The periods k with low + k <= p.x < high + k.
             let (first, last) = ((p.x - high).floor() as i64 + 1, (p.x - low).floor() as i64);
             let behind = |&k: &i64| {
                 let share = (p.x - k as f64 - a.x) / (b.x - a.x);

@@ -12,7 +12,7 @@
 //! The side with the face on the left of the way up follows each hole from where the cut enters it to where
 //! it leaves it; the other side, on the way down, follows the rest of the hole.
 
-use super::cuts::{Cuts, Hop, Side};
+use super::cuts::{Bridge, Cuts, Side};
 use super::winding::part_of;
 use super::{Unroll, area, shifted};
 use crate::keys::{ChartPoint, Segment};
@@ -35,10 +35,11 @@ impl Unroll<'_, '_> {
         let sides = [Side::Loop(&start), Side::Loop(&end)];
         let mut cuts = Cuts::new(sides, &repeated, 0, turn, lengths, self.context.surface.periods);
         cuts.repeat_across(step, count);
-        let hops = cuts.chain()?;
+        let bridges = cuts.chain()?;
         drop(cuts);
-        let winding = self.sides_of_cycle(&start, &hops, &repeated, step);
-        let mut passed: Vec<usize> = hops[1..].iter().map(|hop| (hop.from.node - 1) % count).collect();
+        let winding = self.sides_of_cycle(&start, &bridges, &repeated, step);
+        let mut passed: Vec<usize> =
+            bridges[1..].iter().map(|bridge| (bridge.from.node - 1) % count).collect();
         passed.sort_unstable();
         for &hole in passed.iter().rev() {
             others.remove(hole);
@@ -52,11 +53,11 @@ impl Unroll<'_, '_> {
     fn sides_of_cycle(
         &mut self,
         root: &OpenLoop,
-        hops: &[Hop],
+        bridges: &[Bridge],
         holes: &[OpenLoop],
         step: DVec2,
     ) -> Vec<OpenLoop> {
-        let (first, last) = (hops[0].from, hops[hops.len() - 1].to);
+        let (first, last) = (bridges[0].from, bridges[bridges.len() - 1].to);
         let n = root.points.len();
         // The vector from the root to the end of the cut.
         let by = last.uv - root.points[last.index].uv;
@@ -67,26 +68,26 @@ impl Unroll<'_, '_> {
             ChartPoint { uv: point.uv + by, segment: Segment::Seam, ..point }
         };
         let mut up = vec![seam_at(first.index, DVec2::ZERO)];
-        let mut inner = Vec::with_capacity(hops.len());
-        for (k, hop) in hops.iter().enumerate() {
-            inner.push(self.seam(&mut up, hop.to.uv));
-            if let Some(next) = hops.get(k + 1) {
-                let hole = &holes[hop.to.node - 1];
-                let by = hop.to.uv - hole.points[hop.to.index].uv;
-                up.extend(part_of(hole, hop.to.index, next.from.index, by));
+        let mut inner = Vec::with_capacity(bridges.len());
+        for (k, bridge) in bridges.iter().enumerate() {
+            inner.push(self.seam(&mut up, bridge.to.uv));
+            if let Some(next) = bridges.get(k + 1) {
+                let hole = &holes[bridge.to.node - 1];
+                let by = bridge.to.uv - hole.points[bridge.to.index].uv;
+                up.extend(part_of(hole, bridge.to.index, next.from.index, by));
             }
         }
         let mut rest = part_of(root, last.index, first.index, by);
         rest.pop();
         up.extend(rest);
         let mut down = vec![seam_at(last.index, by)];
-        for (k, hop) in hops.iter().enumerate().rev() {
+        for (k, bridge) in bridges.iter().enumerate().rev() {
             Self::seam_back(&mut down, &inner[k], DVec2::ZERO);
             if k > 0 {
-                let entry = hops[k - 1].to;
-                let hole = &holes[hop.from.node - 1];
+                let entry = bridges[k - 1].to;
+                let hole = &holes[bridge.from.node - 1];
                 let by = entry.uv - hole.points[entry.index].uv;
-                down.extend(part_of(hole, hop.from.index, entry.index, by));
+                down.extend(part_of(hole, bridge.from.index, entry.index, by));
             }
         }
         let count = if first.index == last.index { n } else { (last.index + n - first.index) % n };

@@ -3,7 +3,7 @@
 //!
 //! Holes that the cut leads through become sides of the polygon and are taken out of the list of holes.
 
-use super::cuts::{Cuts, Hop, Side, Stop, hold_beside, whole_turns};
+use super::cuts::{Bridge, BridgeEnd, Cuts, Side, move_into_strip, nearest_period};
 use super::{Unroll, along_axis, mean, shifted};
 use crate::keys::{ChartPoint, Key, Segment};
 use crate::trimmed_face::OpenLoop;
@@ -49,7 +49,7 @@ impl Unroll<'_, '_> {
                 if let Some(period) = self.context.surface.periods[across] {
                     let step =
                         along_axis(across, if value > mean(&a.points, across) { period } else { -period });
-                    hold_beside(holes, &a, turn, step);
+                    move_into_strip(holes, &a, turn, step);
                 }
                 Ok(self.between_sides([Side::Loop(&a), Side::Pole(value)], axis, turn, holes))
             }
@@ -57,7 +57,7 @@ impl Unroll<'_, '_> {
                 let (a, b) = self.pair(winding, axis);
                 let turn = along_axis(axis, period * f64::from(a.winding[axis]));
                 if let Some(period) = self.context.surface.periods[across] {
-                    hold_beside(holes, &a, turn, along_axis(across, period));
+                    move_into_strip(holes, &a, turn, along_axis(across, period));
                 }
                 Ok(self.between_sides([Side::Loop(&a), Side::Loop(&b)], axis, turn, holes))
             }
@@ -110,7 +110,7 @@ impl Unroll<'_, '_> {
         let by = -(of_loop(&b) - of_loop(&a)).floor();
         let step = turns((m, n)) * periods;
         b.points = shifted(&b.points, step * by);
-        hold_beside(holes, &a, turns((i, j)) * periods, step);
+        move_into_strip(holes, &a, turns((i, j)) * periods, step);
         Ok(self.between_sides([Side::Loop(&a), Side::Loop(&b)], 0, turns((i, j)) * periods, holes))
     }
 
@@ -193,14 +193,14 @@ impl Unroll<'_, '_> {
         let lengths = self.lengths_at(place);
         let cuts = Cuts::new(sides, holes, axis, turn, lengths, self.context.surface.periods);
         let straight = self.straight_cut(&cuts, sides, axis, turn, lengths, holes.len());
-        let hops = match straight {
-            Ok(hop) => vec![hop],
+        let bridges = match straight {
+            Ok(bridge) => vec![bridge],
             // Where nothing is free the loops cross each other: finer chords are asked for later on.
             Err(shortest) => cuts.chain().unwrap_or_else(|| vec![shortest]),
         };
         drop(cuts);
-        let polygon = self.cut_open(sides, &hops, turn, holes);
-        let mut passed: Vec<usize> = hops[1..].iter().map(|hop| hop.from.node - 1).collect();
+        let polygon = self.cut_open(sides, &bridges, turn, holes);
+        let mut passed: Vec<usize> = bridges[1..].iter().map(|bridge| bridge.from.node - 1).collect();
         passed.sort_unstable();
         for &hole in passed.iter().rev() {
             holes.remove(hole);
@@ -224,25 +224,30 @@ impl Unroll<'_, '_> {
         turn: DVec2,
         lengths: DVec2,
         holes: usize,
-    ) -> Result<Hop, Hop> {
-        let stop = |node: usize, index: usize, uv: DVec2| Stop { node, index, uv };
-        let checked = |hop: Hop| if cuts.is_free(hop.from.uv, hop.to.uv) { Ok(hop) } else { Err(hop) };
+    ) -> Result<Bridge, Bridge> {
+        let stop = |node: usize, index: usize, uv: DVec2| BridgeEnd { node, index, uv };
+        let checked = |bridge: Bridge| {
+            if cuts.is_free(bridge.from.uv, bridge.to.uv) { Ok(bridge) } else { Err(bridge) }
+        };
         match sides {
             [Side::Loop(a), Side::Loop(b)] => {
-                let between = |&(_, i, j, turns): &(f64, usize, usize, f64)| Hop {
+                let between = |&(_, i, j, turns): &(f64, usize, usize, f64)| Bridge {
                     from: stop(0, i, a.points[i].uv),
                     to: stop(holes + 1, j, b.points[j].uv + turn * turns),
                 };
                 let candidates = straight_cuts(a, b, turn, lengths);
-                let free =
-                    candidates.iter().take(STRAIGHT_CUTS).map(between).find_map(|hop| checked(hop).ok());
+                let free = candidates
+                    .iter()
+                    .take(STRAIGHT_CUTS)
+                    .map(between)
+                    .find_map(|bridge| checked(bridge).ok());
                 free.ok_or_else(|| between(&candidates[0]))
             }
             [Side::Loop(a), Side::Pole(value)] => {
                 let from = a.points[0].uv;
                 let mut to = from;
                 to[1 - axis] = value;
-                checked(Hop { from: stop(0, 0, from), to: stop(holes + 1, 0, to) })
+                checked(Bridge { from: stop(0, 0, from), to: stop(holes + 1, 0, to) })
             }
             [Side::Pole(value), other] => {
                 let mut from = match other {
@@ -254,7 +259,7 @@ impl Unroll<'_, '_> {
                 if let Side::Pole(end) = other {
                     to[1 - axis] = end;
                 }
-                checked(Hop { from: stop(0, 0, from), to: stop(holes + 1, 0, to) })
+                checked(Bridge { from: stop(0, 0, from), to: stop(holes + 1, 0, to) })
             }
         }
     }
@@ -263,48 +268,48 @@ impl Unroll<'_, '_> {
     fn cut_open(
         &mut self,
         sides: [Side<'_>; 2],
-        hops: &[Hop],
+        bridges: &[Bridge],
         turn: DVec2,
         holes: &[OpenLoop],
     ) -> Vec<ChartPoint> {
-        let (start, end) = (hops[0].from, hops[hops.len() - 1].to);
+        let (start, end) = (bridges[0].from, bridges[bridges.len() - 1].to);
         // The second side begins where the first one ends, one turn on, and runs back.
         let end = match sides[1] {
             Side::Loop(b) => {
                 let own = b.points[end.index].uv;
-                Stop { uv: own + turn * (whole_turns(end.uv - own, turn) + 1.0), ..end }
+                BridgeEnd { uv: own + turn * (nearest_period(end.uv - own, turn) + 1.0), ..end }
             }
-            Side::Pole(_) => Stop { uv: end.uv + turn, ..end },
+            Side::Pole(_) => BridgeEnd { uv: end.uv + turn, ..end },
         };
         let mut polygon = self.once_along(sides[0], start, turn);
-        let mut inner = Vec::with_capacity(hops.len());
-        for (k, hop) in hops.iter().enumerate() {
-            let to = if k + 1 == hops.len() { end.uv } else { hop.to.uv + turn };
+        let mut inner = Vec::with_capacity(bridges.len());
+        for (k, bridge) in bridges.iter().enumerate() {
+            let to = if k + 1 == bridges.len() { end.uv } else { bridge.to.uv + turn };
             inner.push(self.seam(&mut polygon, to));
-            if let Some(next) = hops.get(k + 1) {
-                let hole = &holes[hop.to.node - 1];
-                let by = hop.to.uv - hole.points[hop.to.index].uv + turn;
-                polygon.extend(part_of(hole, hop.to.index, next.from.index, by));
+            if let Some(next) = bridges.get(k + 1) {
+                let hole = &holes[bridge.to.node - 1];
+                let by = bridge.to.uv - hole.points[bridge.to.index].uv + turn;
+                polygon.extend(part_of(hole, bridge.to.index, next.from.index, by));
             }
         }
         polygon.extend(self.once_along(sides[1], end, -turn));
-        for (k, hop) in hops.iter().enumerate().rev() {
+        for (k, bridge) in bridges.iter().enumerate().rev() {
             Self::seam_back(&mut polygon, &inner[k], -turn);
             if k > 0 {
-                let hole = &holes[hop.from.node - 1];
-                let entry = hops[k - 1].to;
+                let hole = &holes[bridge.from.node - 1];
+                let entry = bridges[k - 1].to;
                 let by = entry.uv - hole.points[entry.index].uv;
-                polygon.extend(part_of(hole, hop.from.index, entry.index, by));
+                polygon.extend(part_of(hole, bridge.from.index, entry.index, by));
             }
         }
         polygon
     }
 
     /// One side of the face from a stop on it to the same place one `turn` on.
-    fn once_along(&mut self, side: Side<'_>, from: Stop, turn: DVec2) -> Vec<ChartPoint> {
+    fn once_along(&mut self, side: Side<'_>, from: BridgeEnd, turn: DVec2) -> Vec<ChartPoint> {
         match side {
             Side::Loop(open) => {
-                let turns = whole_turns(from.uv - open.points[from.index].uv, turn);
+                let turns = nearest_period(from.uv - open.points[from.index].uv, turn);
                 let moved = OpenLoop { points: shifted(&open.points, turn * turns), ..OpenLoop::default() };
                 Self::once_round(&moved, from.index, turn)
             }
@@ -334,7 +339,7 @@ fn straight_cuts(a: &OpenLoop, b: &OpenLoop, turn: DVec2, lengths: DVec2) -> Vec
     for i in (0..a.points.len()).step_by(stride(a.points.len())) {
         for j in (0..b.points.len()).step_by(stride(b.points.len())) {
             let d = b.points[j].uv - a.points[i].uv;
-            let turns = -whole_turns(d, turn);
+            let turns = -nearest_period(d, turn);
             let d = d + turn * turns;
             candidates.push((math::square(d.x * lengths.x) + math::square(d.y * lengths.y), i, j, turns));
         }
