@@ -18,14 +18,19 @@ struct Timing {
     triangles: usize,
     /// In millimetres.
     tolerance: f64,
-    /// One per repetition, in seconds: CPU time of all threads, where the system tells, else wall time.
+    /// One per repetition, in seconds: CPU time of all threads if the system provides it, else wall time.
     read: Vec<f64>,
     mesh: Vec<f64>,
     clock: &'static str,
 }
 
 pub fn run(args: &BenchArgs) -> Exit {
-    // One thread unless told otherwise: what is compared is work, not cores.
+    let checked = args.accuracy.check_without_audit("chordal bench").and_then(|()| args.accuracy.check());
+    if let Err(sentence) = checked {
+        say(&sentence);
+        return Exit::Nothing;
+    }
+    // One thread unless `--jobs` is given: the comparison is of work, not of cores.
     let options = args.accuracy.options();
     let pool = match thread_pool(Some(args.accuracy.jobs.unwrap_or(1))) {
         Ok(pool) => pool,

@@ -43,7 +43,8 @@ fn text(found: &CheckReport) -> String {
         .volume
         .map_or_else(|| "n/a (the mesh is not closed and oriented)".into(), |v| format!("{v:.6} mm³"));
     let mut out = format!(
-        "triangles   {}\nvertices    {}\nclosed      {} ({} open edges)\noriented    {} ({} inconsistent edges)\n\
+        "triangles   {}\nvertices    {}\nclosed      {} ({} open edges)\n\
+         oriented    {} ({} inconsistent edges)\n\
          degenerate  {}\nduplicate   {}\nvolume      {volume}\n",
         found.triangles,
         found.vertices,

@@ -32,10 +32,20 @@ fn compare(args: &CompareArgs) -> Result<Comparison, String> {
     if args.accuracy.strategy.strategy.is_some() {
         return Err("--strategy has no effect here: name the strategies to compare with --strategies".into());
     }
+    args.accuracy.check_without_audit("chordal compare")?;
     let options = args.accuracy.options();
     let all = || strategies().iter().collect();
     let compared: Vec<&StrategyEntry> =
         if args.strategies.is_empty() { all() } else { args.strategies.clone() };
+    let is_default = |entry: &&StrategyEntry| entry.strategy.is_none();
+    if let Some(option) = args.accuracy.limits_of_facets()
+        && args.accuracy.is_estimated()
+        && !compared.iter().any(is_default)
+    {
+        return Err(format!(
+            "{option} has no effect on the faces of these strategies with --bound estimated; use --bound proven"
+        ));
+    }
     let bound = options.mesher().bound;
     let bounds: &[Bound] = if args.both_bounds { &[Bound::Proven, Bound::Estimated] } else { &[bound] };
     let mut tell = |row: &ComparedRow| {
@@ -59,7 +69,8 @@ fn compare(args: &CompareArgs) -> Result<Comparison, String> {
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.
 fn table(comparison: &Comparison) -> String {
     let mut out = format!(
-        "{}: {} faces, tolerance {:.6} mm\n\n{:<18} {:<9} {:>10} {:>8} {:>9} {:>12} {:>12} {:>7} {:>6} {:>8}\n",
+        "{}: {} faces, tolerance {:.6} mm\n\n{:<18} {:<9} {:>10} {:>8} {:>9} {:>12} {:>12} \
+         {:>7} {:>6} {:>8}\n",
         comparison.model,
         comparison.faces,
         comparison.tolerance,

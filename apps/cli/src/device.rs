@@ -17,11 +17,9 @@ impl Device {
     pub fn open(args: &MeshArgs) -> Result<Self, String> {
         match args.device {
             EvaluateArg::Cpu => Ok(Self {}),
-            EvaluateArg::Gpu => {
-                Err("--device gpu: this build lacks the feature `gpu`; rebuild with `cargo build --release -p chordal-cli \
-                     --features gpu`"
-                    .into())
-            }
+            EvaluateArg::Gpu => Err("--device gpu: this build lacks the feature `gpu`; rebuild with \
+                     `cargo build --release -p chordal-cli --features gpu`"
+                .into()),
         }
     }
 
@@ -44,7 +42,7 @@ impl Device {
         self.gpu.as_ref().map_or_else(Bulk::default, |gpu| Bulk::new(gpu.clone()))
     }
 
-    /// Says what the device did, and whether it failed.
+    /// Prints what the device did, and whether it failed.
     pub fn tell(&self) {
         let Some(gpu) = &self.gpu else { return };
         let (points, dispatches) = gpu.work();

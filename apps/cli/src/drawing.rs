@@ -40,7 +40,8 @@ fn draw(face: &FaceMesh, cells: &[UvBox]) -> String {
     };
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {0}\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<g fill=\"#eee\" stroke=\"#999\" stroke-width=\"2\">\n",
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
+         <g fill=\"#eee\" stroke=\"#999\" stroke-width=\"2\">\n",
         SIZE + 40.0
     );
     for cell in cells {

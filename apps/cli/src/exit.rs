@@ -32,16 +32,16 @@ impl Exit {
 
 /// One sentence on standard error.
 pub fn say(sentence: &str) {
-    // Where this fails there is nobody to tell.
+    // If standard error cannot be written, there is no other place for the message.
     let _ = writeln!(io::stderr(), "chordal: {sentence}");
 }
 
-/// Text on standard output; a reader that has gone away is no error.
+/// Prints text to standard output. A closed pipe is no error.
 pub fn print(data: &str) {
     print_bytes(data.as_bytes());
 }
 
-/// Bytes on standard output; a reader that has gone away is no error. Any other failure is told, and the
+/// Writes bytes to standard output. A closed pipe is no error. Any other failure is reported, and the
 /// program ends with 1 at least.
 pub fn print_bytes(data: &[u8]) {
     if let Err(error) = try_print(data) {
@@ -50,7 +50,7 @@ pub fn print_bytes(data: &[u8]) {
     }
 }
 
-/// Bytes on standard output; a reader that has gone away is no error.
+/// Writes bytes to standard output. A closed pipe is no error.
 ///
 /// # Errors
 /// Any other failure.

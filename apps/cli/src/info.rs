@@ -11,7 +11,7 @@ use chordal::report::GapSurvey;
 use chordal::{Info, PartInfo, ReadOptions};
 use std::fmt::Write;
 
-/// At most so many lines of a list are shown unless `--full` is given.
+/// The number of lines of a list that are shown without `--full`.
 const SHOWN: usize = 20;
 
 /// Runs the command.

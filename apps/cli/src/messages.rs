@@ -4,10 +4,10 @@ use crate::exit::say;
 use chordal::brep::issue::words::{count, length_mm, number};
 use chordal::{Error, Report, Severity};
 
-/// At most so many warnings of one input are shown unless `-v` is given; the report has all.
+/// The number of warnings shown per input without `-v`. The report has all of them.
 const WARNINGS_SHOWN: usize = 3;
 
-/// How much is said.
+/// How many messages are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Talk {
     /// Problems only.

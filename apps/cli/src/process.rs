@@ -16,7 +16,7 @@ pub fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, String> 
         .map_err(|e| format!("cannot start {number} worker threads: {e}"))
 }
 
-/// The largest resident memory so far, in bytes, where the system tells.
+/// The largest resident memory so far, in bytes, if the system provides it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

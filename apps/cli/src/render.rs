@@ -6,9 +6,8 @@ use crate::render_args::RenderArgs;
 /// Says how to get a build that draws.
 #[cfg(not(feature = "gpu"))]
 pub fn run(_args: &RenderArgs) -> Exit {
-    say(
-        "this build lacks the feature `gpu`; rebuild with `cargo build --release -p chordal-cli --features gpu`",
-    );
+    say("this build lacks the feature `gpu`; rebuild with \
+         `cargo build --release -p chordal-cli --features gpu`");
     Exit::Nothing
 }
 
@@ -45,7 +44,7 @@ mod drawing {
 
     fn draw(args: &RenderArgs) -> Result<Report, String> {
         let options = picture(args)?;
-        // The device first: without one all else would be in vain.
+        // The device first: without one, nothing else is worth doing.
         let renderer = ImageRenderer::open(device(args)).map_err(|e| e.to_string())?;
         let input = Input::of(&args.input);
         let failed = |error: chordal::Error| error_sentence(&input.name(), &error);
@@ -78,6 +77,12 @@ mod drawing {
     /// An option that has no effect is refused.
     fn check(args: &RenderArgs) -> Result<(), String> {
         let is_mesh = matches!(args.mode, ModeArg::Mesh);
+        if !is_mesh && !matches!(args.style, StyleArg::Shaded | StyleArg::Edges) {
+            return Err("--mode nurbs needs --style shaded or edges: the other styles show the mesh".into());
+        }
+        if args.normals.is_some() && matches!(args.style, StyleArg::Edges) {
+            return Err("--normals has no effect with --style edges, which does not light faces".into());
+        }
         if is_mesh && (args.trim.is_some() || args.normals.is_some()) {
             let option = if args.trim.is_some() { "trim" } else { "normals" };
             return Err(format!("--{option} needs --mode nurbs: it has no effect on a mesh"));

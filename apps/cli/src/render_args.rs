@@ -26,7 +26,8 @@ pub struct RenderArgs {
     #[arg(long)]
     pub fit: bool,
     /// How much nearer than what fits, about the middle of the picture.
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_zoom, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_zoom,
+        allow_hyphen_values = true)]
     pub zoom: ZoomArg,
     #[arg(long, value_enum, default_value = "mesh")]
     pub mode: ModeArg,

@@ -8,7 +8,7 @@ use chordal::brep::issue::words::{count, length_mm};
 use chordal::mesh_file::{MeshSewing, MeshSewingReport, sew_mesh_file};
 use std::fmt::Write;
 
-/// At most so many open borders are shown; JSON has more.
+/// The number of open borders that are shown; JSON has more.
 const SHOWN: usize = 8;
 
 /// Runs the command.

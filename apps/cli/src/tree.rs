@@ -3,7 +3,7 @@
 use chordal::{Info, NodeInfo};
 use std::fmt::Write;
 
-/// Draws the tree. `limit`: at most so many lines; what is left out is counted.
+/// Draws the tree in at most `limit` lines, and counts the nodes that are omitted.
 pub fn draw(info: &Info, limit: usize) -> String {
     let mut lines = Vec::new();
     for root in &info.tree {

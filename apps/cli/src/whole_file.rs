@@ -23,7 +23,7 @@ pub fn write_whole(path: &Path, data: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// The name of the temporary file says nothing to users, who named another one.
+/// Replaces the name of the temporary file, which users do not know, by the name of the output.
 fn without_temporary_name(error: io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(_) => error,

@@ -25,6 +25,18 @@ fn options_without_effect_are_refused() {
     refused(&format!("{estimated} --max-edge 1mm"), &[&bracket, &at("a.stl")], "--max-edge");
     refused(&format!("{estimated} --angle 5deg"), &[&bracket, &at("a.stl")], "--angle");
     refused("compare {} --strategy grid", &[&bracket], "--strategies");
+    for command in ["compare", "bench"] {
+        refused(&format!("{command} {{}} --sew auto"), &[&bracket], "--sew");
+        refused(&format!("{command} {{}} --no-self-intersections"), &[&bracket], "--no-self-intersections");
+    }
+    refused("compare {} --bound estimated --strategies grid,cells --angle 5deg", &[&bracket], "--angle");
+    refused("bench {} --bound estimated --strategy grid --max-edge 1mm", &[&bracket], "--max-edge");
+    for option in
+        ["--repeat 3", "--strategy grid", "--edge-method bezier2d", "--bound proven", "--winding odd"]
+    {
+        let name = option.split(' ').next().unwrap_or_default();
+        refused(&format!("bench {{}} --papers {option}"), &[&bracket], name);
+    }
     refused("info {} --full --json", &[&bracket], "--full");
     assert_eq!(files_in(folder.path()), Vec::<String>::new());
 }

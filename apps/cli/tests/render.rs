@@ -50,3 +50,23 @@ fn bad_options_are_one_sentence() {
     run("render {} -o {}", &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
     assert!(!out.exists());
 }
+
+#[cfg(feature = "gpu")]
+#[test]
+fn options_without_effect_are_refused() {
+    for (options, word) in [
+        ("--mode nurbs --style wireframe", "--style"),
+        ("--mode nurbs --style error", "--style"),
+        ("--mode nurbs --style edges --normals exact", "--normals"),
+        ("--normals exact", "--normals"),
+        ("--trim texture", "--trim"),
+        ("--fit", "--fit"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out.png");
+        let line = format!("render {{}} -o {{}} {options}");
+        let ran = run(&line, &[&model("bracket"), &out]).exits(&[2]).says_one_sentence();
+        assert!(ran.stderr.contains(word), "{options}: {}", ran.stderr);
+        assert!(!out.exists());
+    }
+}

@@ -9,7 +9,8 @@ fn a_comparison_is_a_table_and_a_plot() {
     let folder = tempfile::tempdir().expect("a folder");
     let plot = folder.path().join("plot.svg");
     let ran = run(
-        "compare {} --tolerance 0.5% --strategies default,kd-worst,quadtree --both-bounds --json -q --plot {}",
+        "compare {} --tolerance 0.5% --strategies default,kd-worst,quadtree --both-bounds --json -q --plot \
+         {}",
         &[&model("blade"), &plot],
     )
     .exits(&[0]);
@@ -153,7 +154,8 @@ fn both_conventions_of_trimming_loops_can_be_asked_for() {
     let text = "#Inventor V2.1 ascii\nSeparator { Coordinate3 { point [0 0 0, 4 0 0, 0 4 0, 4 4 0] }\n\
         ProfileCoordinate2 { point [0.25 0.25, 0.75 0.25, 0.75 0.75, 0.25 0.75] }\n\
         LinearProfile { index [0, 1, 2, 3, 0] }\n\
-        NurbsSurface { numUControlPoints 2 numVControlPoints 2 uKnotVector [0 0 1 1] vKnotVector [0 0 1 1] } }\n";
+        NurbsSurface { numUControlPoints 2 numVControlPoints 2 uKnotVector [0 0 1 1] vKnotVector [0 0 1 1] \
+        } }\n";
     std::fs::write(&file, text).expect("written");
     for (winding, area) in [("odd", 4.0), ("even", 12.0)] {
         let line = format!("mesh {{}} -o {{}} --winding {winding} --unit m --report {{}} -q");

@@ -201,7 +201,7 @@ fn loop_chords(context: &Context<'_>, a_loop: &Loop, found: &mut Boundary) -> Ve
     chords
 }
 
-/// Pairs what is left over: the two sides of a cut run over the same positions in opposite directions.
+/// Pairs the remaining half-edges: the two sides of a cut pass the same positions in opposite directions.
 fn pair_cuts(pool: &mut Pool, halves: &[Half], of_face: &FaceMesh, found: &mut Boundary) {
     let uv = |corner: u32| of_face.corners[corner as usize].uv;
     for i in 0..halves.len() {

@@ -1,4 +1,4 @@
-//! What the audit of a part knows before it looks at faces and shells; every other stage reads it.
+//! The data that all stages of the audit of a part share, computed before faces and shells are checked.
 
 use crate::edges::EdgeAudit;
 use crate::precision::{AIM, CHARGED};

@@ -288,17 +288,20 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn no_sample_is_farther(points in prop::collection::vec(prop::array::uniform3(-1.0..1.0).prop_map(DVec3::from), 9..60)) {
+        fn no_sample_is_farther(points in prop::collection::vec(prop::array::uniform3(-1.0..1.0)
+            .prop_map(DVec3::from), 9..60)) {
             let all: Vec<[DVec3; 3]> = points.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
             let (from, to) = all.split_at(1 + all.len() / 3);
             let tree = TriangleTree::new(to.to_vec());
             let found = largest_distance(from, &tree, 1e-3);
-            prop_assert!(found.at_most - found.at_least <= 1.001e-3, "{:?} from {:?} to {:?}", found, from, to);
+            prop_assert!(found.at_most - found.at_least <= 1.001e-3, "{:?} from {:?} to {:?}", found, from,
+                to);
             prop_assert!((tree.distance(found.point, f64::INFINITY) - found.at_least).abs() < 1e-12);
             for t in from {
                 for i in 0..=10 {
                     for j in 0..=10 - i {
-                        let p = t[0] + (t[1] - t[0]) * (f64::from(i) / 10.0) + (t[2] - t[0]) * (f64::from(j) / 10.0);
+                        let p = t[0] + (t[1] - t[0]) * (f64::from(i) / 10.0)
+                            + (t[2] - t[0]) * (f64::from(j) / 10.0);
                         prop_assert!(tree.distance(p, f64::INFINITY) <= found.at_most + 1e-12);
                     }
                 }

@@ -1,4 +1,4 @@
-//! Edges: every polyline runs along its curve, in order, without a sample left out.
+//! Edges: every polyline runs along its curve, in order, without a missing sample.
 //!
 //! The parameter of each sample is found again from its position, so that the bound of each chord rests on
 //! nothing that the mesher said.

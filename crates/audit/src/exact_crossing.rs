@@ -50,7 +50,7 @@ struct Side<'a> {
     uv: DVec2,
 }
 
-/// What the file says about the faces of two facets that cut each other.
+/// Whether the exact faces of two facets that cut each other also cross.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum InFile {
     /// No crossing of the faces is found.
@@ -61,7 +61,7 @@ pub(crate) enum InFile {
     Crossing,
 }
 
-/// What the file says about two faces near the point `at` of two of their facets, which cut each other.
+/// Whether two exact faces cross near the point `at`, where two of their facets cut each other.
 pub(crate) fn in_file(
     part: &Part,
     mesh: &PartMesh,

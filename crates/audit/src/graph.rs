@@ -4,7 +4,7 @@
 //! number of their boundary around it (as in [`crate::overlap`]). Where the boundary does not touch itself
 //! and winds once around a place beside each of its chains, that number is 1 everywhere inside: no facet is
 //! over another one, and none cuts another. Coordinates are as they are and signs are exact, so this proves
-//! it; where it cannot, pairs of facets tell.
+//! it; otherwise, pairs of facets are compared.
 
 use crate::boundary_tree::{BoundaryTree, Chains, Side};
 use crate::halves::Halves;

@@ -1,4 +1,4 @@
-//! Half-edges of a face's triangles, paired by corner: what is left over bounds the face in its chart.
+//! Half-edges of a face's triangles, paired by corner. Those without a partner bound the face in its chart.
 //!
 //! Corners, not positions: the two sides of a seam share positions and stay apart here.
 

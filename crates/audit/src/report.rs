@@ -58,13 +58,13 @@ impl AuditOptions {
     }
 }
 
-/// What the mesher says of one face.
+/// What the mesher states about one face.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Claim {
     /// NaN where nothing is claimed to be proven.
     pub proven_error: f64,
     pub gap: f64,
-    /// It was said that the face has no triangles, because it failed or has no area.
+    /// The mesher states that the face has no triangles, because it failed or has no area.
     pub missing: bool,
     /// It has none because it has no area, and the shell is closed without it.
     pub needless: bool,
@@ -115,7 +115,7 @@ pub struct ShellAudit {
     /// Index of the shell in its part.
     pub shell: u32,
     pub closed_in_file: bool,
-    /// Every face of it has triangles, or was said to need none.
+    /// Each of its faces has triangles, or needs none according to the mesher.
     pub complete: bool,
     /// No open and no inconsistent edge.
     pub watertight: bool,

@@ -35,10 +35,10 @@ use chordal_brep::AuditIssue;
 use chordal_nurbs::{DVec2, DVec3, Surface, UvBox};
 use rayon::prelude::*;
 
-/// One facet of so many is bounded again.
+/// One facet in this many is bounded again.
 const STRIDE: usize = 64;
 
-/// The largest facet of one face of so many is bounded again; of the others it is looked at in points.
+/// The largest facet of one face in this many is bounded again; on the other faces it is measured at points.
 const LARGEST_OF: usize = 4;
 
 /// Pieces into which the surface over a facet is divided at most.

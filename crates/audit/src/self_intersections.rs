@@ -5,7 +5,7 @@
 //! tangent, loose edges.
 //!
 //! 1. A tree over the boxes of the faces gives pairs of faces that may meet.
-//! 2. Pairs of which one is clearly beside the plane of the other are left out ([`crate::separation`]).
+//! 2. Pairs of which one is clearly beside the plane of the other are omitted ([`crate::separation`]).
 //! 3. Trees over the boxes of their facets, built when first needed, give pairs of facets.
 //! 4. Exact predicates decide ([`crate::triangle_pair`]).
 //!
@@ -168,7 +168,7 @@ impl Crossing<'_> {
         self.pairs().map(move |[s, t]| FacetCrossing { faces, bounds: cut_points(s, t) })
     }
 
-    /// What the file says about the two faces, by places spread over all their cuts.
+    /// Whether the two exact faces cross, by tests at places distributed over all cuts of their facets.
     fn in_file(&self, part: &Part, mesh: &PartMesh) -> InFile {
         let faces = self.faces.map(|f| f.face as usize);
         let cuts = self.pairs().zip(&self.facets).step_by(self.facets.len().div_ceil(MOST_PLACES).max(1));
@@ -178,7 +178,7 @@ impl Crossing<'_> {
     }
 }
 
-/// The pairs of facets that cut each other, found as long as comparisons are left.
+/// The pairs of facets that cut each other, found within the limit of comparisons.
 struct Cuts {
     facets: Vec<[u32; 2]>,
     left: usize,

@@ -189,7 +189,8 @@ mod tests {
             let triangles: Vec<[DVec3; 3]> = corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
             let tree = TriangleTree::new(triangles.clone());
             for p in asked {
-                let all = triangles.iter().map(|&t| closest_point(p, t).distance(p)).fold(f64::INFINITY, f64::min);
+                let all = triangles.iter().map(|&t| closest_point(p, t).distance(p))
+                    .fold(f64::INFINITY, f64::min);
                 prop_assert!((tree.distance(p, f64::INFINITY) - all).abs() <= 1e-14);
                 prop_assert_eq!(tree.distance(p, 1e-9 * all), 1e-9 * all);
             }
@@ -197,7 +198,8 @@ mod tests {
 
         /// No convex combination of the corners is closer.
         #[test]
-        fn closest_points_are_closest(t in points(3..4), p in points(1..2), w in prop::array::uniform3(0.001..1.0f64)) {
+        fn closest_points_are_closest(t in points(3..4), p in points(1..2),
+            w in prop::array::uniform3(0.001..1.0f64)) {
             let triangle = [t[0], t[1], t[2]];
             let sum: f64 = w.iter().sum();
             let other = (triangle[0] * w[0] + triangle[1] * w[1] + triangle[2] * w[2]) / sum;

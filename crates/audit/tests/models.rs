@@ -66,7 +66,8 @@ fn real_models_are_audited() {
             }
         }
         println!(
-            "{name}: {triangles} triangles, {failed} faces failed, meshing {meshing:.2} s, audit {auditing:.2} s ({:.0} %)",
+            "{name}: {triangles} triangles, {failed} faces failed, meshing {meshing:.2} s, audit \
+             {auditing:.2} s ({:.0} %)",
             100.0 * auditing / meshing
         );
         for (kind, (count, sentence)) in kinds {

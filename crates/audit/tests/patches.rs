@@ -237,7 +237,8 @@ fn no_facet_of_ten_thousand_patches_is_farther_off_than_its_bound() {
                 }
                 assert!(
                     distance <= error + slack,
-                    "patch {round}, facet to surface: {error:e} is below {distance:e}: {surface:?} {uv:?} {w:?}"
+                    "patch {round}, facet to surface: {error:e} is below {distance:e}: {surface:?} {uv:?} \
+                     {w:?}"
                 );
             }
         }

@@ -304,7 +304,8 @@ fn a_dropped_hole_is_found() {
     let tolerance = 1e-3 * common::diagonal(&part);
     let mut tried = 0;
     for f in 0..part.faces.len() {
-        let planar = matches!(&part.faces[f].geometry, FaceGeometry::Surface(s) if matches!(**s, Surface::Plane { .. }));
+        let planar = matches!(&part.faces[f].geometry,
+            FaceGeometry::Surface(s) if matches!(**s, Surface::Plane { .. }));
         if !planar || part.faces[f].loops.len() < 2 {
             continue;
         }

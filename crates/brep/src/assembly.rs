@@ -46,7 +46,7 @@ pub struct Model {
     pub nodes: Vec<Node>,
     /// The nodes at the top of the tree.
     pub roots: Vec<NodeId>,
-    /// What was repaired, guessed or left out while the file was read.
+    /// What was repaired, assumed or ignored while the file was read.
     pub issues: Vec<Issue>,
 }
 

@@ -8,8 +8,9 @@ use std::collections::BTreeSet;
 impl Part {
     /// These faces, in this order, with their edges and vertices, which they share as before.
     ///
-    /// Names, colours, layers, loose items and triangles of the file are gone; entity numbers and lines stay.
-    /// All faces are in one sheet, or in the shells and bodies of the part where no face is left out.
+    /// The excerpt has no names, colours, layers, loose items or triangles of the file. Entity numbers and
+    /// lines are kept. All faces are in one sheet, or in the shells and bodies of the part where no face is
+    /// left out.
     pub fn excerpt(&self, faces: &[FaceId]) -> Part {
         let mut part = Part { uncertainty: self.uncertainty, source: self.source, ..Part::default() };
         let mut copies = Island::default();

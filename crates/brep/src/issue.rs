@@ -35,7 +35,7 @@ pub enum Severity {
     Note,
     /// Something was ignored or changed that may matter to the user; no geometry is missing.
     Warning,
-    /// Geometry is missing or a promise is not kept: the run ends with exit code 1.
+    /// Geometry is missing, or a guarantee does not hold: the run ends with exit code 1.
     Error,
 }
 
@@ -52,7 +52,7 @@ impl Severity {
 
 /// What happened, by stage.
 ///
-/// Lengths are millimetres unless a field says otherwise; the stage that makes the issue converts them.
+/// Lengths are millimetres unless a field states another unit; the stage that makes the issue converts them.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum IssueKind {
@@ -163,7 +163,7 @@ impl Issue {
         Issue::new(self.severity, owner, ReadIssue::Of { issue: Box::new(self.clone()) })
     }
 
-    /// True where geometry is missing or a promise is not kept.
+    /// True if geometry is missing or a guarantee does not hold.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }

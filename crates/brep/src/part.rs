@@ -64,7 +64,7 @@ pub enum Loop {
     Edges {
         /// The uses of edges, each starting where the one before ends.
         coedges: Vec<Coedge>,
-        /// The file says that it is the face's outer boundary.
+        /// True if the file states that it is the outer boundary of the face.
         outer: bool,
     },
     /// The loop is one point (VERTEX_LOOP): it cuts nothing off.
@@ -73,7 +73,7 @@ pub enum Loop {
     Polygon {
         /// The corners in order, the first not repeated at the end.
         vertices: Vec<VertexId>,
-        /// The file says that it is the face's outer boundary.
+        /// True if the file states that it is the outer boundary of the face.
         outer: bool,
     },
 }

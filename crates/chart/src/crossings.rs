@@ -1,11 +1,14 @@
 //! Loops that cross in the chart: because chords are too coarse, or because the curves cross.
 //!
 //! ```text
-//!        ___c___                 Two chords cross. The curve over a–b bulges by β; where c lies within β of a–b, a finer a–b may
-//!   a __/   |   \__ b            pass on the other side of it. Where no end of either chord lies within the other's bulge, finer
-//!     ──────┼──────              chords cross, too: the file's loops do.
+//!        ___c___
+//!   a __/   |   \__ b            chords a–b and c–d cross; β is the bulge of the curve over a–b
+//!     ──────┼──────
 //!           d
 //! ```
+//!
+//! If c is within β of a–b, a finer chord a–b may pass on the other side of c. If no end of either chord is
+//! within the bulge of the other one, the curves cross, and finer chords would cross, too.
 //!
 //! The bulge is measured where it counts, on the surface: how far the surface over the middle of a chord's
 //! parameters is from the curve's middle, less what the edge lies off the surface at both ends.
@@ -79,9 +82,12 @@ pub fn coarse_chords(
 /// chords has no area.
 ///
 /// ```text
-///     __--b     Two curves leave p in one direction. Chords of equal direction are the longer the flatter their curves,
-///   p==a        and the flatter curve lies nearer to the tangent: halving the longer chord opens the corner.
+///     __--b     two curves with the same tangent at p
+///   p==a
 /// ```
+///
+/// Of two chords with the same direction, the longer one belongs to the flatter curve. Halving it opens the
+/// corner, because the first half of the flatter curve is closer to the tangent.
 pub fn shut_corners(context: &TrimmedFace<'_, '_>, chart: &Chart) -> Vec<(u32, u32)> {
     let mut coarse = Vec::new();
     for &(start, end) in &chart.loops {

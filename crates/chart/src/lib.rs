@@ -7,7 +7,7 @@
 //!    that the loops cross in truth ([`loops_cross`]); then give the part vertices there and loops that do
 //!    not cross ([`uncrossed`]).
 //!
-//! The caller samples the edges ([`EdgeSamples`]) and says how finely cuts through a face are sampled
+//! The caller samples the edges ([`EdgeSamples`]) and chooses how finely cuts through a face are sampled
 //! ([`Seams`]).
 
 #![deny(missing_docs)]

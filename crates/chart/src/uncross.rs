@@ -14,11 +14,14 @@
 //!    number of times.
 //!
 //! ```text
-//!        ___________            ____   ____          Vertices where the strands cross. Between them, both strands are
-//!    ___/___     ___\___   →   /    \ /    \         one edge where they lie within the resolution of each other; else
-//!       \   \___/   /          \____/ \____/         the stretch between them is no part of the face, or a hole in it.
+//!        ___________            ____   ____
+//!    ___/___     ___\___   →   /    \ /    \
+//!       \   \___/   /          \____/ \____/
 //!        \_________/
 //! ```
+//!
+//! There are new vertices where two curves cross. Between two of these vertices, curves within the resolution
+//! of each other become one edge; otherwise, the region between them is outside of the face or a hole.
 //!
 //! Not guaranteed: a face of a closed shell whose region would leave a neighbour's edge open, or run it the
 //! other way round (a bow tie of shared edges), stays as it is in the file, and is reported as not proven.

@@ -67,8 +67,8 @@ pub(crate) fn audit_parts(
         .collect()
 }
 
-/// What the audit says about a meshed part, and what the mesher claims. Where loops were untangled, the mesh
-/// is of the healed part.
+/// The findings of the audit about a meshed part, and the claims of the mesher. Where loops were untangled,
+/// the mesh is of the healed part.
 fn audited(part: &Part, meshed: &MeshedPart, asked: &AuditOptions) -> PartAudit {
     let part = meshed.report.healed.as_deref().unwrap_or(part);
     audit_part(part, &meshed.mesh, asked, Some(&claims(meshed)))

@@ -32,7 +32,7 @@ pub enum Error {
     /// A bug in Chordal.
     #[error("internal error, please report it at {}/issues: {message}", env!("CARGO_PKG_REPOSITORY"))]
     Bug {
-        /// What the failed assertion says.
+        /// The text of the failed assertion.
         message: String,
     },
 }

@@ -93,7 +93,7 @@ impl BulkEvaluator for GpuEvaluator {
                 self.dispatches.fetch_add(1, Ordering::Relaxed);
                 Some(jets)
             }
-            // One surface too large for the device says nothing about others.
+            // A surface that is too large for the device does not affect others.
             Err(GpuError::TooLarge { .. } | GpuError::TooManyPoints(_)) => None,
             Err(error) => {
                 if let Ok(mut failed) = self.failed.lock() {

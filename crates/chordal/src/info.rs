@@ -97,7 +97,7 @@ pub struct PartInfo {
     pub gaps: GapInfo,
     /// Edges that one face alone uses.
     pub open_edges: usize,
-    /// Some edge is shared by two faces: the file has topology, and is sewn only where that is asked for.
+    /// Some edge is shared by two faces: the file has topology, and is sewn only on request.
     pub topology: bool,
     /// How far the open edges are from each other, and the tolerance that `--sew auto` takes; millimetres.
     pub sewing: Option<GapSurvey>,

@@ -26,10 +26,17 @@
 //!
 //! | feature | default | what it adds |
 //! |---|---|---|
-//! | `step`, `iges`, `brep`, `rhino`, `scene`, `obj` | yes | readers: STEP; IGES; OpenCASCADE BREP; Rhino 3DM; Open Inventor, VRML and X3D; free-form OBJ. JSON is always read |
+//! | `step` | yes | reads STEP |
+//! | `iges` | yes | reads IGES |
+//! | `brep` | yes | reads BREP, the text format of OpenCASCADE |
+//! | `rhino` | yes | reads 3DM, the format of Rhino |
+//! | `scene` | yes | reads Open Inventor, VRML and X3D |
+//! | `obj` | yes | reads free-form OBJ |
 //! | `gpu` | no | pictures of models, and faces evaluated on a device (wgpu) |
 //! | `methods` | no | published methods that fill faces and cut edges, by name, and their comparison |
 //! | `levels` | no | coarser levels of sewn meshes (needs a C++ compiler) |
+//!
+//! Chordal's own JSON and that of geomdl are always read.
 //!
 //! The crates of the pipeline can be used alone: [`nurbs`], [`brep`], [`read`], [`sew`], [`chart`],
 //! [`mod@tessellate`], [`audit`], [`mesh`], [`write`](mod@write), [`document`].

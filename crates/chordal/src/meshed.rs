@@ -100,7 +100,7 @@ impl Meshed {
         self.report
     }
 
-    /// The exact model that was meshed, as sewing left it.
+    /// The exact model that was meshed, after sewing.
     pub fn brep(&self) -> &Model {
         &self.model
     }

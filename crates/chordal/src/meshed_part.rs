@@ -34,7 +34,7 @@ impl MeshedPart {
     }
 }
 
-/// Meshes every placed part once, in parallel; `tell` receives the fraction that is done. The result does not
+/// Meshes every placed part once, in parallel; `tell` receives the finished fraction. The result does not
 /// depend on the number of threads.
 ///
 /// One per part of the model, in its order; a part that is never placed has an empty mesh. Also what they

@@ -105,7 +105,7 @@ impl Mesher {
             mesh_parts(&exact, &resolved, run.cancel(), &|done| run.tell(Phase::Meshing, done));
         run.check()?;
 
-        // 4. Audit: recompute every promise from the model and the meshes.
+        // 4. Audit: check every guarantee again, from the model and the meshes.
         run.tell(Phase::Auditing, 0.0);
         let audits = ledger.time(
             |s| &mut s.audit,

@@ -40,7 +40,7 @@ pub(crate) fn largest_scale(m: DMat3) -> f64 {
     let off = 2.0 * (xy * xy + xz * xz + yz * yz);
     let p =
         ((math::square(xx - mean) + math::square(yy - mean) + math::square(zz - mean) + off) / 6.0).sqrt();
-    // A uniform scale, up to rounding: the diagonal says it without the loss of the general formula.
+    // A uniform scale, up to rounding: the diagonal has it more accurately than the general formula.
     if p <= 1e-12 * mean {
         return mean.sqrt();
     }
@@ -59,10 +59,12 @@ mod tests {
         /// No unit vector is stretched by more, and the bound is reached.
         #[test]
         fn largest_scale_is_the_norm(
-            axis in prop::array::uniform3(-1.0..1.0), turn in 0.0..6.0, scale in prop::array::uniform3(0.01..100.0),
+            axis in prop::array::uniform3(-1.0..1.0), turn in 0.0..6.0,
+            scale in prop::array::uniform3(0.01..100.0),
         ) {
             let turn = math::rotation(DVec3::from(axis).try_normalize().unwrap_or(DVec3::X), turn);
-            let m = DMat3::from_quat(turn) * DMat3::from_diagonal(DVec3::from(scale)) * DMat3::from_quat(turn.inverse());
+            let [there, back] = [turn, turn.inverse()].map(DMat3::from_quat);
+            let m = there * DMat3::from_diagonal(DVec3::from(scale)) * back;
             let expected = scale.iter().fold(0.0_f64, |a, b| a.max(*b));
             prop_assert!((largest_scale(m) - expected).abs() < 1e-7 * expected);
             let mirrored = DMat3::from_quat(turn) * DMat3::from_diagonal(DVec3::new(-2.5, 2.5, 2.5));

@@ -23,7 +23,7 @@ pub enum Phase {
     Auditing,
 }
 
-/// Who is told of progress, and may cancel.
+/// Receives the progress, and may cancel.
 #[derive(Clone, Default)]
 pub(crate) struct Listener {
     call: Option<Call>,
@@ -45,7 +45,7 @@ impl Listener {
     pub fn set_cancel(&mut self, cancel: Cancel) {
         self.cancel = cancel;
     }
-    /// Starts a run. A run that the callback cancels leaves later ones alone.
+    /// Starts a run. If the callback cancels one run, later runs are not affected.
     pub fn start(&self) -> Run {
         Run { call: self.call.clone(), cancel: self.cancel.child() }
     }
@@ -92,7 +92,7 @@ pub(crate) struct PartCounter<'a> {
 }
 
 impl<'a> FaceCounter<'a> {
-    /// `tell` receives the fraction that is done.
+    /// `tell` receives the finished fraction.
     pub fn start(model: &Model, resolved: &Resolved, tell: &'a (dyn Fn(f64) + Sync)) -> Self {
         let placed = model.parts.iter().zip(&resolved.uses).filter(|(_, u)| u.instances > 0);
         let faces = placed.map(|(p, _)| p.faces.len()).sum();

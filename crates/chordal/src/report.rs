@@ -38,7 +38,7 @@ pub struct Report {
     /// Largest proven two-sided distance between an exact face and its triangles **as written**, over the
     /// faces that have a proof; without the gap. `null` where no face has a proof.
     pub proven_error: Option<f64>,
-    /// Faces with triangles and without a proof; `proven_error` does not speak of them.
+    /// Faces with triangles but without a proof; `proven_error` does not cover them.
     pub unproven_faces: Vec<FaceName>,
     /// Largest proven distance between an edge and its chords, which `options.boundary_tolerance` bounds;
     /// `null` where it is not known of an edge.
@@ -88,7 +88,7 @@ pub struct Report {
     /// Seconds of an ordinary core that the faces and edges took, by counted work: the same on every machine.
     #[serde(default)]
     pub work: f64,
-    /// Largest resident memory of the process so far, in bytes; `null` where the system does not tell.
+    /// Largest resident memory of the process so far, in bytes; `null` if the system does not provide it.
     pub peak_memory: Option<u64>,
     /// Threads that meshed.
     pub threads: usize,

@@ -1,4 +1,4 @@
-//! From what was asked of the whole model to what is asked of every part, in its own units.
+//! Converts the request for the whole model to a request for every part, in the units of the part.
 
 use crate::error::{Error, FileError, RequestError};
 use crate::options::MeshOptions;
@@ -28,16 +28,16 @@ const LARGEST: f64 = 1e21;
 pub struct Resolved {
     /// In millimetres, of the mesh as written.
     pub tolerance: f64,
-    /// Of the edges, in millimetres; as `tolerance` where nobody asked for another.
+    /// The tolerance of edges, in millimetres; equal to `tolerance` unless another one was requested.
     pub boundary_tolerance: f64,
-    /// Of the tight box in millimetres, where the tolerance was asked for in percent.
+    /// The diagonal of the tight box in millimetres, if the tolerance was requested in percent.
     pub diagonal: Option<f64>,
     /// What placing the mesh and rounding it to the format's numbers may cost, in millimetres: kept back from
     /// the tolerance of the parts.
     pub rounding: f64,
     /// How every part is placed.
     pub uses: Vec<PartUse>,
-    /// What is asked of every part, in its own units.
+    /// The request for every part, in its own units.
     pub parts: Vec<Options>,
     /// What the faces of the file may take together.
     pub(crate) limits: FileLimits,
@@ -64,7 +64,7 @@ impl ResolveError {
     }
 }
 
-/// Resolves `options` for `model`, which was read from so many bytes; zero where it comes from elsewhere.
+/// Resolves `options` for `model`. `bytes` is the size of its file, zero for models that are not from a file.
 ///
 /// # Errors
 /// Where the tolerance is below what the coordinates can represent, or a coordinate is out of range.
@@ -100,7 +100,7 @@ pub(crate) fn resolve(
         }
     }
     let rounding = rounding(largest, options.output_format());
-    // Where rounding takes more than half, the report says that the tolerance was not kept.
+    // If rounding takes more than half, the report states that the tolerance is not met.
     let of_parts = |tolerance: f64| tolerance - rounding.min(0.5 * tolerance);
     let boundary = options.boundary_tolerance().map(|_| of_parts(boundary_tolerance));
     let parts = uses

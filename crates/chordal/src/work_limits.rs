@@ -3,7 +3,8 @@
 //! A file may take its limits per megabyte, and the more the finer its tolerance: the work grows with both.
 //! Limits are limits of counted work, so that they give up the same faces on every machine
 //! ([`chordal_nurbs::work`]). Where all faces together would take more than the file may, they are meshed
-//! anew with an equal share of half as much for each: a few hostile faces fail then, and the others are had.
+//! anew with an equal share of half as much for each: then a few hostile faces fail, and the others are
+//! meshed.
 
 use crate::placement::PartUse;
 use chordal_brep::{Issue, Model, Part, ResultIssue, Severity, Source};
@@ -26,7 +27,7 @@ const BYTES_PER_TRIANGLE: u64 = 250;
 /// Files up to this size have the limits as they are; larger ones have more.
 const BYTES_OF_SMALL_FILE: f64 = 1e6;
 
-/// Models that come from elsewhere than a file count as if every face had so many bytes: about the mean of
+/// Models that are not from a file count as if every face had this many bytes: about the mean of
 /// STEP files.
 const BYTES_PER_FACE: f64 = 2000.0;
 
@@ -54,7 +55,7 @@ pub(crate) struct RequestedLimits {
 }
 
 impl RequestedLimits {
-    /// With defaults in place of what the caller left open.
+    /// With defaults for the values that the caller did not set.
     pub fn resolved(&self, has_methods: bool) -> WorkLimits {
         let default = if has_methods { METHOD_TIMEOUT } else { FACE_TIMEOUT };
         let face_timeout = self.face_timeout.unwrap_or(Some(default));

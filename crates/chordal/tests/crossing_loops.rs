@@ -23,7 +23,8 @@ fn surface(bump: f64) -> String {
     };
     let points: Vec<String> = (0..16).map(place).collect();
     format!(
-        r#"{{"nurbs": {{"degree": [3, 3], "knots_u": [0,0,0,0,1,1,1,1], "knots_v": [0,0,0,0,1,1,1,1], "points": [{}]}}}}"#,
+        r#"{{"nurbs": {{"degree": [3, 3], "knots_u": [0,0,0,0,1,1,1,1], "knots_v": [0,0,0,0,1,1,1,1],
+            "points": [{}]}}}}"#,
         points.join(", ")
     )
 }
@@ -61,13 +62,15 @@ fn mesh(name: &str, bump: f64, corners: &[Corner], faces: &[&[&[usize]]], strate
     let edge = |&[a, b]: &[usize; 2]| {
         let ((au, av), (bu, bv)) = (corners[a], corners[b]);
         format!(
-            r#"{{"curve": {{"on_surface": {{"surface": 0, "curve": {{"nurbs": {{"degree": 1, "knots": [0,0,1,1],
+            r#"{{"curve": {{"on_surface": {{"surface": 0, "curve": {{"nurbs": {{"degree": 1,
+                "knots": [0,0,1,1],
                 "points": [[{au}, {av}], [{bu}, {bv}]]}}}}}}}}, "range": [0, 1], "start": {a}, "end": {b}}}"#
         )
     };
     let text = format!(
         r#"{{"schema": "chordal-model/1", "name": "{name}", "unit": "mm", "nodes": [{{"name": "{name}",
-            "transform": [[1,0,0],[0,1,0],[0,0,1],[0,0,0]], "part": 0}}], "roots": [0], "parts": [{{"name": "{name}",
+            "transform": [[1,0,0],[0,1,0],[0,0,1],[0,0,0]], "part": 0}}], "roots": [0],
+                "parts": [{{"name": "{name}",
             "surfaces": [{}], "vertices": [{}], "edges": [{}], "faces": [{}]}}]}}"#,
         surface(bump),
         corners.iter().map(vertex).collect::<Vec<_>>().join(", "),

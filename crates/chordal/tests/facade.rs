@@ -209,7 +209,8 @@ fn where_no_facet_keeps_the_angle_the_tolerance_comes_first() {
     let points = rows.map(|row| at(row).join(", ")).join(", ");
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("pleat.x3d");
     let text = format!(
-        "#X3D V3.3 utf8\nPROFILE Interchange\nCOMPONENT NURBS : 4\n\nShape {{ geometry NurbsPatchSurface {{ solid FALSE \
+        "#X3D V3.3 utf8\nPROFILE Interchange\nCOMPONENT NURBS : 4\n\nShape {{ geometry NurbsPatchSurface {{ \
+         solid FALSE \
          uOrder 4 vOrder 2 uDimension 4 vDimension 4 controlPoint Coordinate {{ point [ {points} ] }} }} }}\n"
     );
     std::fs::write(&path, text).expect("written");

@@ -58,7 +58,8 @@ fn mesh(name: &str, trim: &str, strategy: &str) -> Meshed {
     let text = format!(
         r#"{{"shape": {{"type": "surface", "count": 1, "data": [{{
             "type": "spline", "rational": false, "dimension": 3, "degree_u": 3, "degree_v": 3,
-            "knotvector_u": [0, 0, 0, 0, 1, 1, 1, 1], "knotvector_v": [0, 0, 0, 0, 1, 1, 1, 1], "size_u": 4, "size_v": 4,
+            "knotvector_u": [0, 0, 0, 0, 1, 1, 1, 1], "knotvector_v": [0, 0, 0, 0, 1, 1, 1, 1], "size_u": 4,
+                "size_v": 4,
             "control_points": {{"points": [{net}]}}, "delta": [0.05, 0.05],
             "trims": {{"count": 1, "data": [{trim}]}}}}]}}}}"#
     );

@@ -186,7 +186,8 @@ fn models_taken_apart_close_again() {
         println!("skipped: there are no models under {}", models.display());
     }
     println!(
-        "| file | closed shells | closed again | watertight | failed | open before | after | move | opening | seconds |"
+        "| file | closed shells | closed again | watertight | failed | open before | after | move | opening \
+         | seconds |"
     );
     for path in files.iter().filter(|p| p.to_string_lossy().contains(&only)) {
         let f = round_trip(path, true);

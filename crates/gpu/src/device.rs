@@ -111,7 +111,7 @@ impl Gpu {
     }
 
     /// # Errors
-    /// [`GpuError::Lost`] where the device is gone.
+    /// [`GpuError::Lost`] if the device was lost.
     pub fn check(&self) -> Result<(), GpuError> {
         match self.lost.lock().ok().and_then(|slot| slot.clone()) {
             Some(reason) => Err(GpuError::Lost(reason)),
@@ -122,7 +122,7 @@ impl Gpu {
     /// Waits until everything submitted is done.
     ///
     /// # Errors
-    /// [`GpuError::Lost`] where the device is gone.
+    /// [`GpuError::Lost`] if the device was lost.
     pub fn wait(&self) -> Result<(), GpuError> {
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
         self.check()?;

@@ -29,7 +29,7 @@ pub enum GpuError {
         /// The driver's words.
         reason: String,
     },
-    /// The device is gone; the driver's words.
+    /// The device was lost; the message is the driver's.
     #[error("the device was lost: {0}")]
     Lost(String),
     /// A buffer is larger than the device can bind.

@@ -174,7 +174,8 @@ fn surfaces_and_curves_of_models_keep_the_bound() {
     });
     let ([surfaces, curves, left_out], worst) = totals.into_inner().expect("no thread has panicked");
     eprintln!(
-        "{surfaces} surfaces and {curves} curves at most {worst:.3} of the bound; {left_out} surfaces have no exact form"
+        "{surfaces} surfaces and {curves} curves at most {worst:.3} of the bound; {left_out} surfaces have \
+         no exact form"
     );
     assert!(surfaces > 0 && curves > 0);
 }

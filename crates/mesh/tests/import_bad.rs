@@ -32,7 +32,8 @@ fn counts_beyond_the_file_are_refused() {
             assert!(sentence.contains("more than the file can hold"), "{sentence}");
         }
     }
-    let list = b"ply\nformat ascii 1.0\nelement face 1\nproperty list int int vertex_indices\nend_header\n4000000000 1\n";
+    let list = b"ply\nformat ascii 1.0\nelement face 1\nproperty list int int \
+        vertex_indices\nend_header\n4000000000 1\n";
     assert!(
         refusal(list, "ply").contains("refers to vertex 1 of 0")
             || refusal(list, "ply").contains("ends inside")
@@ -163,7 +164,8 @@ fn formats_are_read_as_others_write_them() {
     let soup = import_bytes(obj, "obj").unwrap();
     assert_eq!(soup.triangles, [[0, 1, 2], [0, 2, 3]]);
     // Floats in the other byte order, extra properties, an element between.
-    let mut ply = b"ply\r\nformat binary_big_endian 1.0\r\ncomment made elsewhere\r\nelement vertex 3\r\nproperty float x\r\n\
+    let mut ply = b"ply\r\nformat binary_big_endian 1.0\r\ncomment made elsewhere\r\nelement vertex \
+        3\r\nproperty float x\r\n\
         property float y\r\nproperty float z\r\nproperty uchar red\r\nelement edge 1\r\nproperty short v\r\n\
         element face 1\r\nproperty list uchar uint vertex_index\r\nend_header\r\n"
         .to_vec();
@@ -178,7 +180,8 @@ fn formats_are_read_as_others_write_them() {
     assert_eq!(soup.triangles, [[0, 1, 2]]);
     assert_eq!(soup.positions[1].to_array(), [1.5, 0.0, 0.0]);
     // ASCII STL in capitals with tabs, exponents and −0; two solids do not weld.
-    let facet = "FACET NORMAL 0 0 1\n\tOUTER LOOP\n\tVERTEX -0 0 0\n\tVERTEX 1e0 0 0\n\tVERTEX 0 +1 0\nENDLOOP\nENDFACET\n";
+    let facet = "FACET NORMAL 0 0 1\n\tOUTER LOOP\n\tVERTEX -0 0 0\n\tVERTEX 1e0 0 0\n\tVERTEX 0 +1 \
+        0\nENDLOOP\nENDFACET\n";
     let stl = format!("SOLID one\n{facet}{facet}ENDSOLID\nsolid two\n{facet}endsolid");
     let soup = import_bytes(stl.as_bytes(), "stl").unwrap();
     assert_eq!((soup.positions.len(), soup.triangles.len()), (6, 3));

@@ -81,7 +81,7 @@ pub struct ComparedRow {
     /// Faces that the strategy gave up, so that the default made them, as placed: the other figures of the
     /// row are theirs, too.
     pub given_up_faces: usize,
-    /// Rounds in which faces asked for finer edges, the most of any part.
+    /// The number of rounds in which faces requested finer edges, the largest of all parts.
     pub rounds: usize,
     /// Which parts of the mesher ran.
     pub stages: Vec<StageCount>,

@@ -8,7 +8,8 @@ pub enum NurbsError {
     #[error("degree {0} is not between 1 and 100")]
     Degree(usize),
     /// The number of knots is not `points + degree + 1`.
-    #[error("{knots} knots for {points} control points of degree {degree} (expected {})", points + degree + 1)]
+    #[error("{knots} knots for {points} control points of degree {degree} (expected {})",
+        points + degree + 1)]
     KnotCount {
         /// How many knots there are.
         knots: usize,
@@ -30,7 +31,7 @@ pub enum NurbsError {
     /// All knots of the domain are equal.
     #[error("knot vector spans no parameter range")]
     EmptyDomain,
-    /// The control net does not have as many points as the knots ask for.
+    /// The number of control points does not agree with the knots.
     #[error("control net has {found} points, expected {expected}")]
     NetSize {
         /// How many points there are.

@@ -116,7 +116,8 @@ mod tests {
         // cos((2k+1)π/2n))/2.
         let n = 8usize;
         let binomial = |n: usize, k: usize| (0..k).fold(1.0, |b, j| b * (n - j) as f64 / (j + 1) as f64);
-        let value = |i: usize| if (n - i).is_multiple_of(2) { 1.0 } else { -1.0 } * binomial(2 * n, 2 * i) / binomial(n, i);
+        let value = |i: usize| if (n - i)
+            .is_multiple_of(2) { 1.0 } else { -1.0 } * binomial(2 * n, 2 * i) / binomial(n, i);
         let points: Vec<(f64, f64)> = (0..=n).map(|i| (i as f64, value(i))).collect();
         let found = at(curve(&points, None).line_crossings(DVec2::ZERO, DVec2::X, 1e-13));
         assert_eq!(found.len(), n);

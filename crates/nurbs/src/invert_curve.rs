@@ -164,7 +164,7 @@ const NEAR_ENOUGH: f64 = 1e-3;
 /// The ratio of the half axes from which on an ellipse is sampled as a needle.
 ///
 /// Both of its sides are then close together, so a place found near the last one may be on the wrong side. A
-/// larger ratio would accept such places; a smaller one would search ordinary ellipses in vain.
+/// larger ratio would accept such places; a smaller one would search ordinary ellipses without need.
 const NEEDLE: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug)]

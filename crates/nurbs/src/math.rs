@@ -161,14 +161,16 @@ mod tests {
         fn whole_powers_are_those_of_the_logarithm(base in 0.1..10.0, exponent in -20..20) {
             let expected = pow(base, f64::from(exponent));
             prop_assert!((powi(base, exponent) - expected).abs() <= 1e-14 * expected);
-            prop_assert_eq!(powi(-base, exponent), if exponent % 2 == 0 { 1.0 } else { -1.0 } * powi(base, exponent));
+            prop_assert_eq!(powi(-base, exponent),
+                if exponent % 2 == 0 { 1.0 } else { -1.0 } * powi(base, exponent));
         }
 
         #[test]
         fn angles_between_directions(a in -3.0..3.0, b in -3.0..3.0) {
             let turn: f64 = a - b;
             let expected = turn.abs().min(std::f64::consts::TAU - turn.abs());
-            prop_assert!((angle_between(direction(a).extend(0.0), direction(b).extend(0.0)) - expected).abs() < 1e-14);
+            prop_assert!((angle_between(direction(a).extend(0.0), direction(b).extend(0.0)) - expected)
+                .abs() < 1e-14);
         }
     }
 }

@@ -5,7 +5,8 @@
 //! takes one to four nanoseconds on a core of 2022; [`UNITS_PER_SECOND`] converts one into the other.
 //!
 //! [`limited`] sets a limit for a piece of work. Loops that may take long look at [`is_over`] and end early
-//! with whatever they have; the one who set the limit asks [`is_over`] at the end and uses nothing of it.
+//! with an incomplete result. Whoever set the limit calls [`is_over`] at the end and discards the result if
+//! true.
 //!
 //! Count and limit belong to the thread. They are meant for work that stays on one thread from beginning to
 //! end.
@@ -28,8 +29,8 @@ pub fn count(units: u64) {
     DONE.set(DONE.get().wrapping_add(units));
 }
 
-/// The units of so many products in a row: the processor takes several at once, and half of a square of basis
-/// functions is zero. Measured on faces of degree 100.
+/// The units of this many products in a row: the processor takes several at once, and half of a square of
+/// basis functions is zero. Measured on faces of degree 100.
 #[inline]
 pub(crate) const fn products(number: usize) -> u64 {
     (number as u64 * 2).div_ceil(5)
@@ -41,7 +42,7 @@ pub fn done() -> u64 {
     DONE.get()
 }
 
-/// Does something that may take so many units, and no more than what is left of a limit around it. What it
+/// Runs something within this many units, and within the remainder of an enclosing limit. What it
 /// returns means nothing where [`is_over`] is true at its end.
 pub fn limited<T>(units: u64, work_on: impl FnOnce() -> T) -> T {
     struct Restore(u64);

@@ -34,7 +34,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn each_form_is_what_de_boor_says(seed in any::<u64>(), degree in 1usize..=8, more in 0usize..6, rational in any::<bool>()) {
+    fn each_form_is_what_de_boor_says(seed in any::<u64>(), degree in 1usize..=8, more in 0usize..6,
+        rational in any::<bool>()) {
         let mut random = Random(seed);
         let forms = [
             uniform(degree, degree + 1 + more),
@@ -58,7 +59,8 @@ proptest! {
 
     /// Rhino leaves the first and the last knot out: nothing depends on them.
     #[test]
-    fn the_two_end_knots_mean_nothing(seed in any::<u64>(), degree in 1usize..=8, before in 0.0f64..9.0, after in 0.0f64..9.0) {
+    fn the_two_end_knots_mean_nothing(seed in any::<u64>(), degree in 1usize..=8, before in 0.0f64..9.0,
+        after in 0.0f64..9.0) {
         let mut random = Random(seed);
         let knots = random.knots(degree);
         let net = points(&mut random, knots.len() - degree - 1);

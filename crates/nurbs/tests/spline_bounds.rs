@@ -30,7 +30,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn chord_bounds_hold(seed: u64, degree in prop_oneof![1usize..=9, 10usize..=60], rational: bool, far: bool, small: bool) {
+    fn chord_bounds_hold(seed: u64, degree in prop_oneof![1usize..=9, 10usize..=60], rational: bool,
+        far: bool, small: bool) {
         let mut random = Random(seed);
         let mut curve = random.curve(degree, rational, 1.5);
         if far {
@@ -60,7 +61,8 @@ proptest! {
     }
 
     #[test]
-    fn derivative_bounds_hold(seed: u64, degree in prop_oneof![1usize..=9, 10usize..=40], rational: bool, small: bool) {
+    fn derivative_bounds_hold(seed: u64, degree in prop_oneof![1usize..=9, 10usize..=40], rational: bool,
+        small: bool) {
         let mut random = Random(seed);
         let curve = random.curve(degree, rational, 1.0).mapped(|p| p + DVec3::X * 1e3);
         let mut range = random.sub_range(curve.domain());

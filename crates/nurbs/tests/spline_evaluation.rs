@@ -18,7 +18,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn curve_points_agree_with_de_boor(seed: u64, degree in prop_oneof![1usize..=12, 13usize..=100], rational: bool) {
+    fn curve_points_agree_with_de_boor(seed: u64, degree in prop_oneof![1usize..=12, 13usize..=100],
+        rational: bool) {
         let mut random = Random(seed);
         let curve = random.curve(degree, rational, 3.0);
         let net = lift(curve.points(), curve.weights());
@@ -63,7 +64,8 @@ proptest! {
     }
 
     #[test]
-    fn surface_derivatives_agree_with_differences(seed: u64, p in 1usize..=6, q in 1usize..=6, rational: bool) {
+    fn surface_derivatives_agree_with_differences(seed: u64, p in 1usize..=6, q in 1usize..=6,
+        rational: bool) {
         let mut random = Random(seed);
         let surface = random.surface([p, q], rational, 0.5);
         let inside = |random: &mut Random, breaks: Vec<f64>| {

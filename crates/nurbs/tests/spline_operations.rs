@@ -54,7 +54,8 @@ proptest! {
     }
 
     #[test]
-    fn bezier_pieces_are_the_curve(seed: u64, degree in prop_oneof![1usize..=9, 10usize..=40], rational: bool) {
+    fn bezier_pieces_are_the_curve(seed: u64, degree in prop_oneof![1usize..=9, 10usize..=40],
+        rational: bool) {
         let mut random = Random(seed);
         let curve = random.curve(degree, rational, 1.0);
         let mut end = curve.domain().start;
@@ -75,8 +76,10 @@ proptest! {
                 prop_assert!(curve.point(t).distance(piece.eval(s)) < 1e-12 * scale);
                 let [_, d1, d2] = piece.jet(s);
                 let [_, c1, c2] = curve.jet(t);
-                prop_assert!((d1 / range.length()).distance(c1) < 1e-9 * (c1.length() + scale / range.length()));
-                prop_assert!((d2 / math::square(range.length())).distance(c2) < 1e-8 * (c2.length() + math::square(scale / range.length())));
+                prop_assert!((d1 / range.length())
+                    .distance(c1) < 1e-9 * (c1.length() + scale / range.length()));
+                prop_assert!((d2 / math::square(range.length()))
+                    .distance(c2) < 1e-8 * (c2.length() + math::square(scale / range.length())));
                 let inside = curve.point(part.start + s * part.length());
                 prop_assert!(restricted.eval(s).distance(inside) < 1e-11 * scale);
                 prop_assert!(again.eval(s).distance(inside) < 1e-11 * scale);
@@ -96,7 +99,8 @@ proptest! {
         let mut random = Random(seed);
         let surface = random.surface([p, q], rational, 1.0);
         let domain = surface.domain();
-        let at = DVec2::new(random.within(domain.min.x, domain.max.x), random.within(domain.min.y, domain.max.y));
+        let at = DVec2::new(random.within(domain.min.x, domain.max.x),
+            random.within(domain.min.y, domain.max.y));
         let cut = UvBox::from_ranges(random.sub_range(domain.u()), random.sub_range(domain.v()));
         let (left, right) = surface.split_u(at.x).unwrap();
         let (low, high) = surface.split_v(at.y).unwrap();
@@ -125,10 +129,14 @@ proptest! {
         prop_assert!(surface.swapped().point(DVec2::new(uv.y, uv.x)).distance(surface.point(uv)) < 1e-12);
         let uv = at;
         let mirrored = domain.min + domain.max - uv;
-        prop_assert!(surface.reversed_u().point(DVec2::new(mirrored.x, uv.y)).distance(surface.point(uv)) < 1e-11);
-        prop_assert!(surface.reversed_v().point(DVec2::new(uv.x, mirrored.y)).distance(surface.point(uv)) < 1e-11);
-        let map = DAffine3::from_quat(math::rotation(DVec3::Y, 0.7)) * DAffine3::from_scale(DVec3::new(1.0, -2.0, 3.0));
-        prop_assert!(surface.transformed(&map).point(uv).distance(map.transform_point3(surface.point(uv))) < 1e-12);
+        prop_assert!(surface.reversed_u().point(DVec2::new(mirrored.x, uv.y))
+            .distance(surface.point(uv)) < 1e-11);
+        prop_assert!(surface.reversed_v().point(DVec2::new(uv.x, mirrored.y))
+            .distance(surface.point(uv)) < 1e-11);
+        let map = DAffine3::from_quat(math::rotation(DVec3::Y, 0.7)) * DAffine3::from_scale(DVec3::new(1.0,
+            -2.0, 3.0));
+        prop_assert!(surface.transformed(&map).point(uv)
+            .distance(map.transform_point3(surface.point(uv))) < 1e-12);
     }
 
     #[test]
@@ -138,7 +146,8 @@ proptest! {
         let patches = surface.bezier_patches(surface.domain());
         prop_assert_eq!(patches.len(), (surface.breaks_u().len() - 1) * (surface.breaks_v().len() - 1));
         for (cell, patch) in &patches {
-            let part = UvBox::from_ranges(random.sub_range(Range::new(0.0, 1.0)), random.sub_range(Range::new(0.0, 1.0)));
+            let part = UvBox::from_ranges(random.sub_range(Range::new(0.0, 1.0)),
+                random.sub_range(Range::new(0.0, 1.0)));
             let restricted = patch.restricted(part);
             let ((left, right), (low, high)) = (patch.split_u(0.4), patch.split_v(0.6));
             for _ in 0..3 {
@@ -161,7 +170,8 @@ proptest! {
                 }
             }
         }
-        let inner = UvBox::from_ranges(random.sub_range(surface.domain().u()), random.sub_range(surface.domain().v()));
+        let inner = UvBox::from_ranges(random.sub_range(surface.domain().u()),
+            random.sub_range(surface.domain().v()));
         let expected: Vec<_> = patches
             .into_iter()
             .filter(|(c, _)| c.min.cmplt(inner.max).all() && c.max.cmpgt(inner.min).all())
@@ -171,7 +181,8 @@ proptest! {
 
     /// The composed curve passes through S(c(t)), whatever is rational.
     #[test]
-    fn composition_is_pointwise(seed: u64, p in 1usize..=5, q in 1usize..=5, d in 1usize..=5, kinds in 0u8..4) {
+    fn composition_is_pointwise(seed: u64, p in 1usize..=5, q in 1usize..=5, d in 1usize..=5,
+        kinds in 0u8..4) {
         let mut random = Random(seed);
         let patch = {
             let count = (p + 1) * (q + 1);
@@ -191,7 +202,8 @@ proptest! {
 
     /// What was elevated comes back exactly; what was not comes back with an error that holds.
     #[test]
-    fn reduction_keeps_its_bound(seed: u64, n in 1usize..=20, rational: bool, perturbation in prop_oneof![Just(0.0), 1e-9..1.0f64]) {
+    fn reduction_keeps_its_bound(seed: u64, n in 1usize..=20, rational: bool,
+        perturbation in prop_oneof![Just(0.0), 1e-9..1.0f64]) {
         let mut random = Random(seed);
         let points: Vec<DVec3> = (0..=n).map(|_| random.point() * 10.0).collect();
         let original = BezierCurve { points, weights: random.weights(n + 1, rational, 0.3) };

@@ -46,7 +46,8 @@ fn main() {
             })
             .collect();
         println!(
-            "{path}: {} | {} | parts {} nodes {} roots {} | placed faces {} failed {} | warnings {} | {:.1} ms, {:.0} MB/s | peak {} MB ({} before)",
+            "{path}: {} | {} | parts {} nodes {} roots {} | placed faces {} failed {} | warnings {} | {:.1} \
+             ms, {:.0} MB/s | peak {} MB ({} before)",
             model.schema,
             model.unit,
             model.parts.len(),

@@ -26,7 +26,8 @@ fn print(model: &Model, id: NodeId, depth: usize) {
     let bodies = part.map_or(0, |part| part.bodies.iter().filter(|body| body.color.is_some()).count());
     let at = node.transform.translation;
     println!(
-        "{:indent$}{:?} part {name:?}: {faces} faces, {colored} coloured; {bodies} bodies coloured; at {at}; scale {:.4}",
+        "{:indent$}{:?} part {name:?}: {faces} faces, {colored} coloured; {bodies} bodies coloured; at \
+         {at}; scale {:.4}",
         "",
         node.name,
         math::cbrt(node.transform.matrix3.determinant()),

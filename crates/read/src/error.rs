@@ -21,13 +21,15 @@ pub enum ReadError {
     Empty,
     /// The content is of no format that this build reads.
     #[error(
-        "unrecognised file format; supported are STEP (ISO-10303-21), IGES, BREP (CASCADE Topology), Open Inventor, \
+        "unrecognised file format; supported are STEP (ISO-10303-21), IGES, BREP (CASCADE Topology), \
+         Open Inventor, \
          VRML, X3D, free-form OBJ, 3DM, and JSON of Chordal or geomdl"
     )]
     UnknownFormat,
     /// The content is a mesh of triangles and no CAD model.
     #[error(
-        "a triangle mesh ({format}) is no CAD model; `chordal check` examines a mesh, `chordal sew` joins its borders"
+        "a triangle mesh ({format}) is no CAD model; `chordal check` examines a mesh, `chordal sew` joins \
+         its borders"
     )]
     TriangleMesh {
         /// The name of the mesh format.

@@ -6,14 +6,14 @@
 //! ```text
 //!   v═══════════a══════w───────b────────x        the loop comes along b to v and goes back along a
 //!
-//!   v═══════════a══════w───────b'───────x        b is cut at w; from now on its first part is a for all faces
+//!   v═══════════a══════w───────b'───────x        b is cut at w; for all faces, a replaces its first part
 //! ```
 //!
 //! Steps, part by part:
-//! 1. The ends of an edge without length become one vertex, and loops go without it.
+//! 1. The ends of an edge without length become one vertex, and loops omit it.
 //! 2. A closed edge that returns on its own way is cut at its far end into two, and these become one edge.
 //! 3. Where a loop turns back at a vertex along the edge on which it came, the longer of the two edges is cut
-//!    where the shorter one ends, and the two equal parts become one edge. A loop goes without an edge that
+//!    where the shorter one ends, and the two equal parts become one edge. A loop omits an edge that
 //!    it runs there and back, unless nothing else is left of it.
 //!
 //! Notation: the *looseness* of an edge is how far its curve ends from its vertices.
@@ -23,7 +23,7 @@
 use chordal_brep::{Coedge, Edge, EdgeId, FaceGeometry, Loop, Model, Part, Pcurve, Vertex, VertexId};
 use chordal_nurbs::{CurveInverter, DVec3, Range};
 
-/// Edges shorter than this part of their part's size have no length: what is left of it is rounding in the
+/// Edges shorter than this fraction of the part's size have no length: the length is the rounding in the
 /// file.
 const NO_LENGTH: f64 = 1e-9;
 

@@ -1,4 +1,4 @@
-//! Recognises files of triangles: no reader reads them, and the message says so.
+//! Recognises files of triangles, which no reader reads, for a message of their own.
 
 /// The bytes of a binary STL before its triangles, and of each triangle.
 const STL_HEADER: usize = 84;

@@ -1,7 +1,7 @@
-//! Faces from a surface and loops of curves in its parameter space: for formats that know no edges.
+//! Faces from a surface and loops of curves in its parameter space: for formats without edges.
 //!
 //! Each loop is closed and cut at its corners ([`chain`]), loops that cross become loops that do not
-//! ([`untangle`]), loops are told apart into outer ones and holes ([`nest`]), and their pieces become edges
+//! ([`untangle`]), loops are classified as outer ones and holes ([`nest`]), and their pieces become edges
 //! of the part ([`edges`]). A surface without trims gets its own border ([`natural`]).
 //!
 //! What the caller gives runs in the surface's parameters; directions do not matter: outer loops are made to

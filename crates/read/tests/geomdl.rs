@@ -56,7 +56,8 @@ fn square(trims: &str) -> String {
     )
 }
 
-const TRIANGLE: &str = r#"{"type": "freeform", "dimension": 2, "points": [[0.2, 0.2], [0.8, 0.2], [0.5, 0.8], [0.2, 0.2]], "reversed": 1}"#;
+const TRIANGLE: &str = r#"{"type": "freeform", "dimension": 2, "points": [[0.2, 0.2], [0.8, 0.2], [0.5, 0.8],
+    [0.2, 0.2]], "reversed": 1}"#;
 
 fn loops(text: &str) -> Vec<usize> {
     let model = read_bytes(text.as_bytes(), "square").expect("readable");
@@ -79,7 +80,8 @@ fn reversed_trims_keep_their_inside() {
 fn curves_of_a_container_are_put_in_order() {
     let curve = |a: &str, b: &str| {
         format!(
-            r#"{{"type": "spline", "degree": 1, "knotvector": [0, 0, 1, 1], "control_points": {{"points": [{a}, {b}]}}}}"#
+            r#"{{"type": "spline", "degree": 1, "knotvector": [0, 0, 1, 1],
+                "control_points": {{"points": [{a}, {b}]}}}}"#
         )
     };
     let [a, b, c] = ["[0.2, 0.2]", "[0.8, 0.2]", "[0.5, 0.8]"];

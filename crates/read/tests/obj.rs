@@ -93,14 +93,16 @@ fn a_surface_may_be_part_of_its_spline() {
 
 #[test]
 fn weights_count_for_rational_types_only() {
-    let text = "v 0 0 0 1\nv 10 0 0 3\nv 0 10 0\nv 10 10 0\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\nend\n";
+    let text = "v 0 0 0 1\nv 10 0 0 3\nv 0 10 0\nv 10 10 0\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 \
+        4\nparm u 0 1\nparm v 0 1\nend\n";
     assert_eq!(point_of(&model(text), [0.5, 0.0]).x, 5.0);
     assert_eq!(point_of(&model(&text.replace("cstype ", "cstype rat ")), [0.5, 0.0]).x, 7.5);
 }
 
 #[test]
 fn names_polygons_and_loose_items() {
-    let text = "o box\ng front\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf -4//1 -3//1 -2//1\n\
+    let text = "o box\ng front\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf -4//1 -3//1 \
+        -2//1\n\
                 g back\nf 4 3 2 \\\n1\np 1\nl 1 2 3\n";
     let model = model(text);
     let part = &model.parts[0];

@@ -2,7 +2,7 @@
 //! than the tolerance.
 //!
 //! Pairs are joined in the order of their distances. A join that would move a vertex too far, or that would
-//! make the two ends of an edge that must stay the same, is left out.
+//! make the two ends of an edge that must stay the same, is rejected.
 
 use chordal_nurbs::{Box3, BoxTree};
 use glam::DVec3;

@@ -115,7 +115,7 @@ fn cuts_at(
     found
 }
 
-/// The cuts of a border, in the order of their parameters, that leave no sliver; of two cuts that are too
+/// The cuts of a border, in the order of their parameters, without slivers; of two cuts that are too
 /// near to each other, the one closer to its vertex.
 fn kept(border: &Border, ends: [u32; 2], cuts: &[Cut], tolerance: f64) -> Vec<Cut> {
     let shortest = SHORTEST * tolerance;

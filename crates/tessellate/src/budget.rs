@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// The clock gives up what takes so many times its nominal time.
+/// The clock ends work that takes this many times its nominal time.
 const SLOWER: f64 = 1.5;
 
 /// The clock is looked at once in this much work: twenty microseconds cost nothing beside a tenth of one.
@@ -45,7 +45,7 @@ struct Taken {
 }
 
 impl FileBudget {
-    /// The work of this time at the nominal speed, none for any, and so many triangles and chords.
+    /// The work of this time at the nominal speed (`None`: unlimited), and this many triangles and chords.
     pub fn new(time: Option<Duration>, triangles: usize) -> Self {
         let most_units = time.map_or(u64::MAX, units);
         Self { most_units, most_triangles: triangles as u64, taken: Arc::default() }
@@ -85,7 +85,8 @@ pub(crate) struct Spent {
 }
 
 impl Spent {
-    /// Does one piece of the work within what is left. The budget belongs to the thread that calls this.
+    /// Runs one piece of the work within the remaining budget. The budget belongs to the thread that calls
+    /// this.
     pub fn within<T>(
         &self,
         timeout: Option<Duration>,

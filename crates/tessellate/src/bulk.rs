@@ -1,6 +1,6 @@
 //! Evaluation of many points of one surface at once, by a device if there is one.
 //!
-//! A method that knows its points before it connects them announces them ([`Foreseen::ask`]); an
+//! A method that has its points before it connects them announces them ([`Foreseen::ask`]); an
 //! [`BulkEvaluator`] may then compute positions and derivatives of all of them together. Its results place
 //! vertices and shape triangles. Proofs never use them: bounds are computed on this thread, in double
 //! precision.

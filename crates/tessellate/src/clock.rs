@@ -52,7 +52,7 @@ impl Stopwatch {
         Self { kind, cpu: cpu_seconds(kind), wall: now() }
     }
 
-    /// Seconds since it was made; wall time where the system does not tell CPU time, zero where it has no
+    /// Seconds since it was made; wall time if the system provides no CPU time, zero where it has no
     /// clock.
     pub fn seconds(&self) -> f64 {
         let cpu = cpu_seconds(self.kind).zip(self.cpu).map(|(now, then)| now - then);

@@ -52,7 +52,7 @@ struct Chords {
 const PROBES: usize = 4;
 
 /// Chords use this share of the tolerance. The bound of a facet over a chord is a little larger than the
-/// bound of the chord itself; with the whole tolerance, such facets would ask for finer edges.
+/// bound of the chord itself; with the whole tolerance, such facets would request finer edges.
 const CHORD_AIM: f64 = 0.985;
 
 /// A chord without a finite bound is halved this often. Shorter chords mostly have one; where these have
@@ -77,12 +77,12 @@ const HALVINGS: usize = 24;
 /// more than fit into memory. The faces of an edge that needs more fail.
 const MOST_CHORDS: usize = 200_000;
 
-/// An edge is given up where so many chords are expected after the first even rounds, when their bounds have
-/// become tight: it would come to [`MOST_CHORDS`] with most of its time gone.
+/// An edge is given up if this many chords are expected after the first even rounds, when their bounds have
+/// become tight: it would reach [`MOST_CHORDS`] and use most of its time.
 const HOPELESS: f64 = 16.0 * MOST_CHORDS as f64;
 const FIRST_ROUNDS: usize = 2;
 
-/// The clock is looked at once in so many chords: the bound of a chord on an offset surface takes up to a
+/// The clock is read once in this many chords: the bound of a chord on an offset surface takes up to a
 /// millisecond.
 const CHORDS_PER_LOOK: usize = 32;
 
@@ -101,7 +101,7 @@ struct Sampling<'e, 'a, 's> {
 }
 
 impl Sampling<'_, '_, '_> {
-    /// True where so many chords, or the time that they took, are too much.
+    /// True if this number of chords, or their time, exceeds the limit.
     fn is_spent(&self, chords: usize) -> bool {
         chords > MOST_CHORDS || self.budget.is_over()
     }
@@ -304,7 +304,7 @@ fn halved(t: &[f64]) -> Vec<f64> {
 }
 
 /// Samples along an edge to find its crossings with a crease. Two crossings between neighbouring samples are
-/// missed; then a chord passes over the crease, and the proof asks for a finer one.
+/// missed; then a chord passes over the crease, and the proof requests a finer one.
 const CROSSING_SAMPLES: usize = 64;
 
 /// Samples nearer to a crease than this multiple of the rounding of its position lie on it. Rounding puts

@@ -47,9 +47,9 @@ pub(crate) enum Remedy {
 
 const REMEDIES: usize = Remedy::AsItIs as usize + 1;
 
-/// Rounds in which faces may ask for finer edges; what is still too coarse then is meshed as it is and
-/// reported. Chords are up to 2³ · 4⁵ = 8192 times finer by then, and every further round would mesh whole
-/// faces again.
+/// The number of rounds in which faces may request finer edges; what is too coarse then is meshed as it is
+/// and reported. Chords are up to 2³ · 4⁵ = 8192 times finer by then, and every further round would mesh
+/// whole faces again.
 pub(crate) const MAX_ROUNDS: usize = 8;
 
 /// Rounds in which points inside are tried before chords with wild bounds are made finer. With more rounds,
@@ -76,7 +76,7 @@ const SEAM_STEP: f64 = 0.7;
 pub(crate) enum Setback {
     /// Chords (edge, index) of the part's edges are too coarse for this face; the edges must become finer.
     CoarseEdges(Vec<(u32, u32)>),
-    /// A seam, which only this face knows, is too coarse.
+    /// A seam, which no other face uses, is too coarse.
     CoarseSeam,
     /// The loops cross in truth: they have no inside that could be cut along creases.
     Crossing,

@@ -1,7 +1,7 @@
 //! Faces that the methods of the options could not prove: the default means mesh them in further passes.
 //!
 //! Each pass starts from the edges. Where a file is loose, loops cross the sooner the finer they are, and a
-//! method may have asked for chords that the default can do without. A pass counts only if it leaves fewer
+//! method may have requested chords that the default does not need. A pass counts only if it leaves fewer
 //! faces unproven.
 
 use crate::face_result::{Meshed, is_unproven};
@@ -11,11 +11,11 @@ use crate::shared_inner_edges::{separate, unproven_faces};
 use chordal_brep::{MeshIssue, MethodFault};
 
 /// Passes in which the default takes over: first the unproven faces, then with their neighbours, which may be
-/// the ones that ask for finer edges. Further passes would only add the neighbours' neighbours.
+/// the ones that request finer edges. Further passes would only add the neighbours' neighbours.
 const PASSES: usize = 2;
 
-/// Meshes the part once more where methods left faces unproven; nothing where the options name no method. The
-/// result comes with the pass that made it.
+/// Meshes the part again if a named method could not prove some faces; does nothing without a named method.
+/// The result comes with the pass that made it.
 pub(crate) fn leave_to_default<'j, 'a>(
     mut pass: Pass<'j, 'a>,
     mut result: PassResult,

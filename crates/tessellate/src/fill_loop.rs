@@ -123,7 +123,7 @@ fn refine_by_method(
         if judged.coarse.is_empty() && judged.error <= allowed {
             return Ok(prover.proof(judged.error));
         }
-        // Nothing is left to cut, and chords are too coarse that may not be cut any more.
+        // No cell can be cut further, and some chords that must not be cut are too coarse.
         if judged.coarse.is_empty() {
             break;
         }

@@ -1,7 +1,7 @@
 //! Methods of other crates that fill the inside of faces.
 //!
 //! All methods share the edges, the proof and the stitching, and so the watertightness: a method may not set
-//! a vertex on an edge, since the neighbours would not know it. What a method chooses is how a face is
+//! a vertex on an edge, since the neighbours would not have it. What a method chooses is how a face is
 //! subdivided, how the subdivision is cut with the loops, and how the polygons become triangles.
 
 use crate::face_mesh::FaceMesh;
@@ -22,7 +22,7 @@ pub trait FillMethod: Debug + Send + Sync {
     fn begin(&self, face: &FaceMesh<'_, '_>, task: FillTask) -> Result<Box<dyn FaceFiller>, MeshIssue>;
 }
 
-/// What a method must know of the job beside the face.
+/// The data of the job that a method needs beside the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FillTask {
     /// How errors are judged.

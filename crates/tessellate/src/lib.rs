@@ -6,11 +6,11 @@
 //! 2. Sample the edges, each once for all of its faces (`edges`).
 //! 3. Mesh the faces, in rounds (`rounds`). For one face (`attempts`): unroll its loops into one chart
 //!    ([`chordal_chart`]), triangulate them (`triangulate`), fill the inside (`fill_loop`, `rows`), and prove
-//!    every triangle (`prove`). A face that finds an edge too coarse asks for finer chords; the requests of a
+//!    every triangle (`prove`). A face that finds an edge too coarse requests finer chords; the requests of a
 //!    round are merged, and only the faces at those edges run again.
 //! 4. Where loops cross in truth, give the model vertices there and loops that do not, and mesh it again
 //!    ([`chordal_chart::uncrossed`]).
-//! 5. Where facets cut each other and their faces do not, refine both (`parting`), if whoever calls asks for
+//! 5. Where facets cut each other and their faces do not, refine both (`parting`), if the caller requests
 //!    it.
 //! 6. Join the faces (`orient`, `stitch`).
 //!

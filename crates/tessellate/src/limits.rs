@@ -6,10 +6,10 @@ use chordal_nurbs::{DVec3, math};
 /// How the error of a facet is judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bound {
-    /// By an upper bound: the tolerance is a promise.
+    /// By an upper bound: the tolerance is guaranteed.
     #[default]
     Proven,
-    /// By samples, as most meshers do: faster, no promise.
+    /// By samples, as in most meshers: faster, without a guarantee.
     Estimated,
 }
 

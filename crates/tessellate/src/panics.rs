@@ -1,5 +1,5 @@
-//! Panics become issues: a fault of this program costs one face or edge, not the job, and asks for a bug
-//! report.
+//! Panics become issues: a fault of this program costs one face or edge, not the job, and the message
+//! requests a bug report.
 
 use chordal_brep::MeshIssue;
 use std::any::Any;

@@ -77,7 +77,7 @@ fn in_healings(
         };
         let healed_part = healed.as_deref().unwrap_or(part);
         let again = mesh_once(healed_part, &known, options, &mut efforts, cancel, find, &|_| ());
-        // What still crosses is left as the file has it.
+        // Loops that still cross stay as they are in the file.
         if again.crossed.len() >= made.crossed.len() {
             break;
         }
@@ -182,7 +182,7 @@ fn uncrossed_part(
         })
         .collect();
     let seams = job.limits.seams(Effort::of_round(0).seam_chord());
-    // A panic of ours leaves the part as it is.
+    // After a panic, the part stays unchanged.
     let healed = caught(|| {
         let charts: Vec<Crossed<'_, '_>> = trimmed
             .iter()

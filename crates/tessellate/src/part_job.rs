@@ -103,7 +103,7 @@ impl<'a> PartJob<'a> {
         with_surface.collect()
     }
 
-    /// Works at a face, an edge or the healing of loops within what its budget has left.
+    /// Runs the work on a face, an edge or the healing of loops within the remaining budget.
     pub fn within_budget<T>(&self, spent: &Spent, work_on: impl FnOnce(Budget) -> T) -> T {
         spent.within(self.options.face_timeout, self.options.file_budget.as_ref(), work_on)
     }

@@ -9,7 +9,7 @@
 //! 3. These faces are meshed again in rounds, with the neighbours whose edges became finer
 //!    ([`Pass::run_rounds`]).
 //! 4. Go on with 1 until nothing cuts, [`PARTINGS`] times at most.
-//! 5. Pairs of faces that never part are left as they were: once more from the start without them.
+//! 5. If some pairs of faces never part, the refinement starts again without them.
 //!
 //! A mesh in which another face is not proven, or that is much larger, is never taken. Not guaranteed: that
 //! faces which are apart are parted; the audit reports what still cuts.
@@ -84,7 +84,7 @@ fn pairs(cuts: &[FacetCut]) -> BTreeSet<FacePair> {
 struct Parting<'j, 'a, 'f> {
     pass: Pass<'j, 'a>,
     find: &'f FindCuts<'f>,
-    /// Pairs of faces that are left as they are.
+    /// Pairs of faces that are not refined.
     left: BTreeSet<FacePair>,
 }
 

@@ -12,7 +12,7 @@ use chordal_nurbs::{Curve, CurveInverter, DVec2, DVec3, Surface};
 const STEPS: usize = 4;
 
 /// A pcurve whose ends lie further from the ends of its edge than this share of the edge's length belongs to
-/// another piece of the curve. Nothing tells which one, so no reader can use it.
+/// another piece of the curve. Nothing determines which one, so no reader can use it.
 const OTHER_PIECE: f64 = 0.1;
 
 /// Parameters beyond the end of the domain by this share of it are at its end.

@@ -4,10 +4,10 @@
 //! [`Prover::refine`] takes triangles from a queue, one after the other:
 //!
 //! 1. Bound the triangle, and find what is wrong with it ([`Prover::judge`]).
-//! 2. A chord of an edge that is too coarse is noted: after all triangles, the face asks for finer edges.
+//! 2. A chord of an edge that is too coarse is noted: after all triangles, the face requests finer edges.
 //! 3. A chord of a seam that is too coarse ends the attempt: the seam is this face's own, and is cut finer.
 //! 4. Anything else is mended inside ([`mend`]): an edge is flipped, or a point is inserted. The triangles
-//!    that this changes go back to the queue. Once a finer edge is asked for, nothing is mended any more,
+//!    that this changes go back to the queue. Once a finer edge is requested, nothing is mended any more,
 //!    since the face runs again.
 //! 5. Where the queue is empty, triangles without area are flipped; that may fill the queue again.
 //!

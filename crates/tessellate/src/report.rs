@@ -28,7 +28,7 @@ pub struct FaceReport {
     pub trace: Trace,
     /// Time of the phases of a fill method, in the last attempt.
     pub phases: Phases,
-    /// The cells of the subdivision in the chart, where the options ask for them.
+    /// The cells of the subdivision in the chart, if the options request them.
     pub cells: Vec<UvBox>,
     /// The requested method gave the face up, and the default method made it ([`MeshIssue::MethodGaveUp`]).
     pub given_up: Option<MeshIssue>,
@@ -74,7 +74,7 @@ pub struct PartReport {
     pub edge_trace: Trace,
     /// Edges that the requested edge method gave up, so that the default method cut them into chords.
     pub edges_given_up: usize,
-    /// Edges that a fault of this program left without samples, by their index in the part.
+    /// Edges without samples because of a fault of this program, by their index in the part.
     pub edge_faults: Vec<(u32, MeshIssue)>,
     /// Rounds in which faces requested finer edges.
     pub rounds: usize,

@@ -1,7 +1,7 @@
 //! Rounds: all faces of a part are meshed, those that find their edges too coarse once more with finer ones.
 //!
 //! 1. Sample every edge once ([`Pass::sample_edges`]).
-//! 2. Mesh the faces, in parallel. A face never changes an edge; it asks for finer chords.
+//! 2. Mesh the faces, in parallel. A face never changes an edge; it requests finer chords.
 //! 3. Merge the requests of all faces, and cut those chords.
 //! 4. Mesh the faces at those edges again; go on with 3 until there are no requests, or the last round is
 //!    over.
@@ -63,7 +63,7 @@ pub(crate) struct PassResult {
     pub edges_given_up: usize,
     pub edge_faults: Vec<EdgeFault>,
     pub faces: Vec<Meshed>,
-    /// Rounds in which faces asked for finer edges.
+    /// The number of rounds in which faces requested finer edges.
     pub rounds: usize,
 }
 
@@ -251,7 +251,7 @@ impl<'j, 'a> Pass<'j, 'a> {
         length > self.job.resolution || samples.sag[chord] > self.job.resolution
     }
 
-    /// Meshes all faces; those that ask for finer edges, and their neighbours, again. `done` gets the number
+    /// Meshes all faces; those that request finer edges, and their neighbours, again. `done` gets the number
     /// of faces that are finished for the first time.
     pub fn run(&self, done: &(dyn Fn(usize) + Sync)) -> PassResult {
         self.run_with(self.sample_edges(), done)
@@ -270,7 +270,7 @@ impl<'j, 'a> Pass<'j, 'a> {
         result
     }
 
-    /// Meshes these faces, again where they have a mesh already; those that ask for finer edges, and their
+    /// Meshes these faces, again if they have a mesh already; those that request finer edges, and their
     /// neighbours, again.
     pub fn run_rounds(&self, result: &mut PassResult, mut dirty: Vec<usize>, done: &(dyn Fn(usize) + Sync)) {
         let finished = AtomicUsize::new(0);
@@ -301,7 +301,7 @@ impl<'j, 'a> Pass<'j, 'a> {
         result.rounds += rounds;
     }
 
-    /// Cuts the chords that faces asked for; returns the faces at their edges.
+    /// Cuts the requested chords; returns the faces at their edges.
     fn refine_edges(
         &self,
         edges: &mut [EdgeSamples],

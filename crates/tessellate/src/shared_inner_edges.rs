@@ -15,7 +15,7 @@ use chordal_nurbs::Surface;
 use rayon::prelude::*;
 
 /// Rounds in which faces give up such edges: a face that is meshed again may share another one. What is
-/// shared after the last round is left to the audit.
+/// shared after the last round is found by the audit.
 const SEPARATING_ROUNDS: usize = 3;
 
 /// Meshes faces again that share an inner edge with another face.
@@ -67,7 +67,7 @@ fn single_chords<'a>(
     })
 }
 
-/// Of every face: true where it has no triangles, or no proof although one is asked for.
+/// For every face: true if it has no triangles, or no proof although one is requested.
 pub(crate) fn unproven_faces(job: &PartJob<'_>, faces: &[Meshed]) -> Vec<bool> {
     let is_unproven = |(face, meshed): (usize, &Meshed)| match meshed {
         Err(_) => job.surfaces[face].is_ok(),

@@ -1,4 +1,4 @@
-//! Writes a sphere of about a million triangles in every format and says how long each took.
+//! Writes a sphere of about a million triangles in every format and prints the times.
 //!
 //! `cargo run --release -p chordal-write --example sphere -- FOLDER [RINGS]`
 

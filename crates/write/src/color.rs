@@ -2,7 +2,7 @@
 
 use chordal_mesh::Rgba;
 
-/// What a face without a colour is drawn in, where a format cannot leave it open.
+/// The colour of faces without one, in formats that require a colour.
 pub(crate) const UNCOLORED: Rgba = [0.6, 0.6, 0.6, 1.0];
 
 /// A colour's bits, to order and compare by.

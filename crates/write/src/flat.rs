@@ -82,7 +82,7 @@ impl Patch<'_> {
         }
     }
 
-    /// Whether [`Patch::normal`] knows normals at all.
+    /// Whether [`Patch::normal`] has normals.
     pub fn has_normals(&self) -> bool {
         !matches!(self.source, Source::PassThrough { normals: [] })
     }

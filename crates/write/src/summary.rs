@@ -22,7 +22,7 @@ pub struct WriteSummary {
     pub rounding_mm: f64,
     /// Whether a triangle has two corners at one place after rounding.
     pub collapsed: bool,
-    /// What the file's user should know.
+    /// Warnings about the file, for its user.
     pub warnings: Vec<WriteWarning>,
 }
 

@@ -1,9 +1,9 @@
-//! What a user should know about a file that was written.
+//! Warnings about a written file.
 
 use crate::Format;
 use std::fmt;
 
-/// Something about a written file that its user should know. The file is complete.
+/// A warning about a written file. The file is complete.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WriteWarning {

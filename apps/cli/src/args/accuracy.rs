@@ -72,21 +72,47 @@ pub struct AccuracyArgs {
 }
 
 impl AccuracyArgs {
-    /// An option that has no effect is refused.
+    /// Refuses limits that a strategy ignores.
     ///
     /// # Errors
-    /// One sentence where a strategy ignores limits that were given.
+    /// One sentence with the option and the strategy.
     pub fn check(&self) -> Result<(), String> {
-        let is_estimated = matches!(self.bound, BoundArg::Estimated) && self.strategy.strategy.is_some();
-        let given =
-            [("--angle", self.angle.is_some_and(|a| a.0.is_some())), ("--max-edge", self.max_edge.is_some())];
-        match given.iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) if is_estimated => Err(format!(
-                "{option} has no effect on the faces of --strategy {} with --bound estimated; use --bound proven",
+        match self.limits_of_facets() {
+            Some(option) if self.is_estimated() && self.strategy.strategy.is_some() => Err(format!(
+                "{option} has no effect on the faces of --strategy {} with --bound estimated; \
+                 use --bound proven",
                 self.strategy.name
             )),
             _ => Ok(()),
         }
+    }
+
+    /// Refuses what has no effect on a command that meshes parts as they are in the file, without an audit.
+    ///
+    /// # Errors
+    /// One sentence with the option.
+    pub fn check_without_audit(&self, command: &str) -> Result<(), String> {
+        if self.sew.is_some() {
+            return Err(format!("--sew has no effect on `{command}`, which meshes faces without sewing"));
+        }
+        if self.no_self_intersections {
+            return Err(format!(
+                "--no-self-intersections has no effect on `{command}`, which does not audit its meshes"
+            ));
+        }
+        Ok(())
+    }
+
+    /// The first given option that limits facets beside the tolerance.
+    pub fn limits_of_facets(&self) -> Option<&'static str> {
+        let angle = self.angle.is_some_and(|angle| angle.0.is_some());
+        let given = [("--angle", angle), ("--max-edge", self.max_edge.is_some())];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(option, _)| option)
+    }
+
+    /// True if errors are estimated, not proven.
+    pub fn is_estimated(&self) -> bool {
+        matches!(self.bound, BoundArg::Estimated)
     }
 
     /// As options of the library.

@@ -82,7 +82,7 @@ impl MeshArgs {
         })
     }
 
-    /// How much is said.
+    /// How many messages are printed.
     pub fn talk(&self) -> Talk {
         match (self.quiet, self.verbose) {
             (true, _) => Talk::Quiet,

@@ -34,7 +34,8 @@ pub struct SewArgs {
     pub output: PathBuf,
     /// Join borders closer than this: a length (a bare number is in mm), or `auto`, from the resolution of
     /// the coordinates and the gaps. No vertex moves further.
-    #[arg(long, value_name = "LENGTH", default_value = "auto", value_parser = parse_sewing, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", default_value = "auto", value_parser = parse_sewing,
+        allow_hyphen_values = true)]
     pub tolerance: Sewing,
     /// Also write N coarser levels of detail, each with half the triangles of the one before, to OUT.level1,
     /// … (needs a build with the feature `levels`).
@@ -128,7 +129,8 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub accuracy: AccuracyArgs,
     /// Which strategies, separated by commas [default: all].
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = strategies(), conflicts_with = "strategy")]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = strategies(),
+        conflicts_with = "strategy")]
     pub strategies: Vec<&'static StrategyEntry>,
     /// Compare the proven and the estimated bound.
     #[arg(long, conflicts_with = "bound")]
@@ -157,8 +159,8 @@ pub struct BenchArgs {
     /// Repetitions before the clock starts.
     #[arg(long, default_value = "1", value_name = "N")]
     pub warm: usize,
-    /// The tables of Balázs, Guthe, Klein 2004 instead.
-    #[arg(long)]
+    /// Print the tables of Balázs, Guthe, Klein 2004 instead, which name the methods.
+    #[arg(long, conflicts_with_all = ["repeat", "warm", "strategy", "edge_method", "bound", "winding", "input_format"])]
     pub papers: bool,
 }
 

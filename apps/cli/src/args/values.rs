@@ -66,9 +66,9 @@ pub fn parse_seconds(text: &str) -> Result<TimeoutArg, String> {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum BoundArg {
-    /// By upper bounds: the tolerance is a promise.
+    /// By upper bounds: the tolerance is guaranteed.
     Proven,
-    /// From samples: faster, no promise.
+    /// From samples: faster, without a guarantee.
     Estimated,
 }
 

@@ -14,7 +14,7 @@ pub const HANGS: i32 = -1;
 /// Every file of the corpus is small; machines of continuous integration are slow.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// What one run said and how it ended.
+/// The output of one run, and its exit code.
 #[derive(Debug)]
 pub struct Ran {
     pub code: i32,
@@ -63,7 +63,7 @@ impl Ran {
 /// Runs `chordal` with these arguments.
 pub fn chordal<S: AsRef<OsStr>>(args: impl IntoIterator<Item = S>) -> Ran {
     let scratch = tempfile::tempdir().expect("a folder");
-    // Files, not pipes: nobody has to read them while the program runs.
+    // Files, not pipes: a full pipe would block the program.
     let (out, err) = (scratch.path().join("stdout"), scratch.path().join("stderr"));
     let mut child = Command::new(env!("CARGO_BIN_EXE_chordal"))
         .args(args)

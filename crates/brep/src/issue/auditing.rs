@@ -67,7 +67,7 @@ pub enum AuditIssue {
         /// The pair of faces with the most pairs of triangles; twice the same where a face cuts itself.
         faces: [Source; 2],
     },
-    /// Not all triangles of a closed shell were compared: so many lie so close that it would take too long.
+    /// Not all triangles of a closed shell were compared: too many lie close to each other.
     TooManyFacetsMeet {
         /// Pairs of faces of which this is so.
         face_pairs: usize,
@@ -367,7 +367,8 @@ impl fmt::Display for AuditIssue {
                 let pairs = count(*face_pairs, "pair of faces", "pairs of faces");
                 write!(
                     f,
-                    "too many triangles meet to tell whether all cut each other, in {pairs}, first {a} and {b}"
+                    "too many triangles meet to tell whether all cut each other, in {pairs}, first {a} and \
+                     {b}"
                 )
             }
             AuditIssue::DegenerateTriangles { triangles } => {

@@ -65,7 +65,8 @@ issues! {
         instead: &'static str = "The form that is read.",
     } => "other-form", "the {form} form is not supported; write the file as {instead}";
     /// The file is of a version that is not read.
-    UnknownVersion { version: u32 = "The version." } => "unknown-version", "version {version} is not supported";
+    UnknownVersion { version: u32 = "The version." } => "unknown-version",
+        "version {version} is not supported";
     /// JSON that is neither a model of this program nor an export of geomdl.
     UnknownJson => "unknown-json",
         "neither the \"schema\" of a Chordal model nor the \"shape\" of a geomdl export";
@@ -136,7 +137,8 @@ issues! {
     } => "statements-ignored",
         "{} ignored", count(*statements, &format!("{keyword} statement"), &format!("{keyword} statements"));
     /// A statement whose words make no sense.
-    BadStatement { keyword: String = "The keyword." } => "bad-statement", "{keyword} statement without usable values";
+    BadStatement { keyword: String = "The keyword." } => "bad-statement",
+        "{keyword} statement without usable values";
     /// A statement outside of the element to which it belongs.
     MisplacedStatement { keyword: String = "The keyword." } => "misplaced-statement",
         "{keyword} statement outside of any curve or surface ignored";
@@ -178,7 +180,8 @@ issues! {
     /// A node of a kind that has no effect on shapes or is not read.
     NotRead => "not-read", "not supported; ignored";
     /// The data of an object are shorter than its stated length.
-    EndsEarly { bytes: usize = "The bytes that are missing." } => "ends-early", "the data end {bytes} bytes early";
+    EndsEarly { bytes: usize = "The bytes that are missing." } => "ends-early",
+        "the data end {bytes} bytes early";
     /// A list is longer than the file.
     ListTooLong { items: u64 = "The number of items that the file states." } => "list-too-long",
         "a list of {items} items does not fit into the file";
@@ -359,7 +362,9 @@ issues! {
     OneSegment { direction: &'static str = "The direction." } => "one-segment",
         "no parameters along {direction}: read as one segment";
     /// A section that turns with its trajectory has no exact spline form.
-    SweepNotExact { trajectory: &'static str = "What the trajectory is: `closed`, `bent`." } => "sweep-not-exact",
+    SweepNotExact {
+        trajectory: &'static str = "What the trajectory is: `closed`, `bent`.",
+    } => "sweep-not-exact",
         "the trajectory is {trajectory}; a section that turns with it has no exact spline form";
     /// A weight is zero.
     ZeroWeight => "zero-weight", "weight 0 replaced by a weight too small to matter";
@@ -425,7 +430,9 @@ issues! {
     /// The sense of an edge contradicts its vertices.
     EdgeSense => "edge-sense", "the sense of the edge contradicts its vertices; the vertices are used";
     /// An edge without extent.
-    EdgeIsPoint { cause: Option<Box<Issue>> = "Why its curve is not used, where it has one." } => "edge-is-point",
+    EdgeIsPoint {
+        cause: Option<Box<Issue>> = "Why its curve is not used, where it has one.",
+    } => "edge-is-point",
         "edge read as a single point{}", cause.as_ref().map_or(String::new(), |cause| format!(": {cause}"));
     /// The curve of an edge cannot be used.
     EdgeStraightened { cause: Box<Issue> = "Why." } => "edge-straightened",
@@ -484,7 +491,9 @@ issues! {
         cause: Box<ReadIssue> = "Why.",
     } => "shell-ignored", "{what} ignored: {cause}";
     /// A piece of a trim loop has no finite extent.
-    TrimPieceNotFinite { trim: usize = "The number of the loop on its surface, from 1." } => "trim-piece-not-finite",
+    TrimPieceNotFinite {
+        trim: usize = "The number of the loop on its surface, from 1.",
+    } => "trim-piece-not-finite",
         "trim loop {trim} has a piece without finite extent";
     /// A trim loop is open; straight lines close it.
     TrimLoopOpen {
@@ -506,7 +515,10 @@ issues! {
         places: usize = "The number of places.",
     } => "trims-untangled",
         "{} at {}; a vertex is set at each",
-        if *loops == 1 { "the trim loop crosses or touches itself" } else { "trim loops cross or touch each other" },
+        match *loops {
+            1 => "the trim loop crosses or touches itself",
+            _ => "trim loops cross or touch each other",
+        },
         count(*places, "place", "places");
     /// The trim loops remove all of the surface.
     NothingTrimmed => "nothing-trimmed", "the trim loops remove the whole surface";

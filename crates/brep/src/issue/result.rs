@@ -118,7 +118,8 @@ impl fmt::Display for ResultIssue {
                 let distance = length_mm(*distance);
                 write!(
                     f,
-                    "the 32-bit coordinates of {format} move vertices by up to {distance}, {percent} % of the \
+                    "the 32-bit coordinates of {format} move vertices by up to {distance}, {percent} % of \
+                     the \
                      tolerance; PLY, OBJ and 3MF store 64-bit coordinates"
                 )
             }

@@ -2,11 +2,14 @@
 //! polygons.
 //!
 //! ```text
-//!   ┌───────┬──────┐        ┌───────┐ ┌──────┐       Both sides of the cut have the same vertices, as those of a
-//!   │   ┌───┼──┐   │        │   ┌───┘ └──┐   │       seam have; each is moved a little to its own side, so that the
-//!   │   └───┼──┘   │   →    │   └───┐ ┌──┘   │       surface is evaluated on that side of the crease.
+//!   ┌───────┬──────┐        ┌───────┐ ┌──────┐
+//!   │   ┌───┼──┐   │        │   ┌───┘ └──┐   │
+//!   │   └───┼──┘   │   →    │   └───┐ ┌──┘   │
 //!   └───────┴──────┘        └───────┘ └──────┘
 //! ```
+//!
+//! Both sides of a cut have the same vertices, like those of a seam. The parameters of each side are moved a
+//! little away from the crease, so that the surface is evaluated on that side of it.
 //!
 //! New polygons are walked on each side of the line: along the pieces of boundary on that side and, between
 //! two places where the boundary meets the line with the face in between, along the line. Where several
@@ -21,7 +24,7 @@ use std::collections::BTreeMap;
 /// than the resolution.
 const NEAR: f64 = 1e-3;
 
-/// Polygons with more cuts than this are left as they are.
+/// Polygons with more cuts than this are not cut.
 const MAX_LINES: usize = 4096;
 
 /// A line of parameter space: the coordinate `axis` has this value.

@@ -3,11 +3,14 @@
 //!
 //! ```text
 //!       │ cut
-//!   ┌───j───┐          The first cut begins and ends at the same hole, one period on: along it the surface becomes
-//!   │ root  │          a band between the two sides of the cut, which a second cut from the one to the other
-//!   └───i───┘          makes a polygon.
+//!   ┌───j───┐
+//!   │ root  │
+//!   └───i───┘
 //!       │ cut
 //! ```
+//!
+//! The first cut begins at a hole and ends at the same hole, one period further. It makes the surface a band
+//! between the two sides of the cut. A second cut from one side to the other makes the band a polygon.
 //!
 //! The side with the face on the left of the way up follows each hole from where the cut enters it to where
 //! it leaves it; the other side, on the way down, follows the rest of the hole.
@@ -123,5 +126,5 @@ fn repeated(holes: &[OpenLoop], start: &OpenLoop, step: DVec2) -> Vec<OpenLoop> 
     (0..=most).flat_map(place).collect()
 }
 
-/// A hole is tried in so many places at most, beyond the first.
+/// The number of places at which a hole is tried, in addition to the first one.
 const MOST_PLACES: i32 = 16;

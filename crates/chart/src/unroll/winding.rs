@@ -195,7 +195,7 @@ impl Unroll<'_, '_> {
         let straight = self.straight_cut(&cuts, sides, axis, turn, lengths, holes.len());
         let bridges = match straight {
             Ok(bridge) => vec![bridge],
-            // Where nothing is free the loops cross each other: finer chords are asked for later on.
+            // If no bridge is free, the loops cross each other; a later stage requests finer chords.
             Err(shortest) => cuts.chain().unwrap_or_else(|| vec![shortest]),
         };
         drop(cuts);
@@ -345,7 +345,7 @@ fn straight_cuts(a: &OpenLoop, b: &OpenLoop, turn: DVec2, lengths: DVec2) -> Vec
         }
     }
     candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
-    // Of cuts that only rounding tells apart, the one between the first samples.
+    // Of cuts whose costs differ by rounding only, the one between the first samples.
     let scale = candidates[0].0;
     candidates
         .chunk_by_mut(|x, y| y.0 - x.0 <= 1e-9 * (scale + x.0))
@@ -374,7 +374,7 @@ pub(super) fn seam_beside(holes: &[OpenLoop], axis: usize, period: f64, start: f
     };
     let better = |best: (f64, f64), place: f64| {
         let d = distance(place);
-        // Of places that only rounding tells apart, the first.
+        // Of places that differ by rounding only, the first.
         if d > best.1 + 1e-9 * period { (place, d) } else { best }
     };
     let places = (0..PLACES).map(|k| start + period * k as f64 / PLACES as f64);

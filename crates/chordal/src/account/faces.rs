@@ -55,7 +55,7 @@ fn add_face(report: &mut Report, entry: &Entry<'_>, face: &Face, of_face: &FaceR
     if of_face.untangled > 0 {
         problem(Severity::Warning, MeshIssue::LoopsUntangled { crossings: of_face.untangled }.into());
     }
-    // A fault of this program says more than that the method gave up for it.
+    // A fault of this program takes precedence over the problem that the method gave up.
     if let Some(issue) = of_face.mended.as_ref().or(of_face.given_up.as_ref()) {
         problem(Severity::Warning, issue.clone().into());
     }

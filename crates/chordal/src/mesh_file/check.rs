@@ -1,4 +1,4 @@
-//! What is to be said about a mesh file, whoever wrote it.
+//! Checks a mesh file of any program.
 
 use super::against::{AgainstReport, measure_against};
 use crate::edge_count::EdgeCount;
@@ -39,7 +39,7 @@ pub struct CheckReport {
     pub duplicate_triangles: usize,
     /// In cubic millimetres; only of a closed and oriented mesh. Negative: inside out.
     pub volume: Option<f64>,
-    /// The comparison with a CAD model, where it was asked for.
+    /// The comparison with a CAD model, if requested.
     pub against: Option<AgainstReport>,
 }
 

@@ -17,13 +17,13 @@ pub const SEW_SCHEMA: &str = "chordal-sew/2";
 /// So many open borders are listed, the longest first.
 const LISTED: usize = 50;
 
-/// What is asked of the sewing of a mesh file.
+/// The request for the sewing of a mesh file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshSewing {
     /// The merge tolerance; only `Auto` and `Millimetres` sew.
     pub tolerance: Sewing,
-    /// The unit of the file's coordinates, where it says none or the wrong one.
+    /// The unit of the file's coordinates, if the file states none or a wrong one.
     pub unit: Option<Unit>,
     /// The format of the output; `None`: by its extension.
     pub format: Option<Format>,
@@ -85,7 +85,7 @@ pub struct MeshSewingReport {
     pub inserted: usize,
     /// Vertices that became another one.
     pub merged: usize,
-    /// Correspondences that were left out, because a vertex would have moved too far or a triangle vanished.
+    /// Correspondences that were rejected, because a vertex would have moved too far or a triangle vanished.
     pub rejected: usize,
     /// Edges with one triangle afterwards.
     pub open_after: usize,
@@ -93,7 +93,7 @@ pub struct MeshSewingReport {
     pub open: Vec<OpenBorderEntry>,
     /// The largest distance that a vertex moved.
     pub largest_move: f64,
-    /// Triangles without area that were left out, and those whose normal turned by more than a right angle.
+    /// Triangles without area that were omitted, and those whose normal turned by more than a right angle.
     pub degenerate: usize,
     /// Triangles whose normal turned by more than a right angle.
     pub folded: usize,

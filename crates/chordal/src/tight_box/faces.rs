@@ -16,7 +16,7 @@ const SIDE: usize = 4;
 const ZOOMS: usize = 8;
 /// Triangles whose sag stands for that of all of a face.
 const SPREAD: usize = 100;
-/// What is looked for, relative to the box: far finer than what a percentage is asked in.
+/// The accuracy of the search relative to the box: far finer than any percentage that users give.
 const MATTERS: f64 = 1e-6;
 /// A face that needs more triangles than this at the coarse tolerance will fail later as well, and with a
 /// reason.

@@ -203,7 +203,8 @@ fn a_cycle_in_sources_is_found() {
 
 #[test]
 fn an_arrow_that_is_not_drawn_is_found() {
-    let text = "```text\ncrates/\n  base/    uses none of ours   points\n  mid/     → base   more\n  top/     → mid, far-off   x\n```\n";
+    let text = "```text\ncrates/\n  base/    uses none of ours   points\n  mid/     → \
+        base   more\n  top/     → mid, far-off   x\n```\n";
     let drawn = manifest::drawn(text);
     let of = |name: &str| manifest::reachable(&drawn, name).into_iter().collect::<Vec<_>>();
     assert_eq!(of("top"), ["base", "far-off", "mid"]);

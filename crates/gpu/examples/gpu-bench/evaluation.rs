@@ -176,7 +176,8 @@ pub fn mesher(gpu: &Gpu) -> Result<(), GpuError> {
     let surface = surface(1, PAPER);
     let evaluator = KernelRunner::<f64>::new(gpu, Variant::Bernstein, Search::Host)?;
     println!(
-        "Point, first and second derivatives in f64 at scattered places of one surface, uploaded and read back,"
+        "Point, first and second derivatives in f64 at scattered places of one surface, uploaded and read \
+         back,"
     );
     println!("million a second:\n");
     println!("| points | device | one core |\n|---|---|---|");

@@ -23,7 +23,8 @@ fn options(size: [u32; 2]) -> RenderOptions {
 pub fn by_surfaces(gpu: &Gpu) -> Result<(), GpuError> {
     let size = if gpu.is_software() { [640, 480] } else { [1920, 1080] };
     println!(
-        "Frames of {} × {} pixels, four samples each, {PIXEL_ERROR} pixel of error, every third surface trimmed, all in view,",
+        "Frames of {} × {} pixels, four samples each, {PIXEL_ERROR} pixel of error, every third surface \
+         trimmed, all in view,",
         size[0], size[1]
     );
     println!("from above; waited for, not read back. Moving: 2 % nearer from frame to frame.\n");
@@ -73,7 +74,8 @@ pub fn by_surfaces(gpu: &Gpu) -> Result<(), GpuError> {
 /// What placements cost: one part of three surfaces, one of them trimmed, placed over and over.
 pub fn by_placements(gpu: &Gpu) -> Result<(), GpuError> {
     println!(
-        "One part of three surfaces placed many times, 640 × 480 pixels. Milliseconds until the frame is submitted, and until it is"
+        "One part of three surfaces placed many times, 640 × 480 pixels. Milliseconds until the frame is \
+         submitted, and until it is"
     );
     println!(
         "done: of a frame like the last, and of one whose placements are composed with the camera again.\n"
@@ -113,7 +115,8 @@ pub fn by_grids(gpu: &Gpu) -> Result<(), GpuError> {
     let largest = if gpu.is_software() { 1280 } else { 7680 };
     let largest = largest.min(gpu.device.limits().max_texture_dimension_2d);
     println!(
-        "Thirty surfaces, ten of them trimmed, in pictures of growing size; animated: control points of all of them change"
+        "Thirty surfaces, ten of them trimmed, in pictures of growing size; animated: control points of all \
+         of them change"
     );
     println!("from frame to frame.\n");
     println!("| picture | points a surface | frames/s, still | frames/s, animated |");

@@ -12,7 +12,8 @@ const RUNS: usize = 200;
 /// One patch, and the paper's surface of 9 × 9 spans.
 pub fn one_core() -> Result<(), GpuError> {
     println!(
-        "One core, 1024² points of a rational bicubic surface, f64, rows that stay in the cache; 12 multiply-adds and"
+        "One core, 1024² points of a rational bicubic surface, f64, rows that stay in the cache; 12 \
+         multiply-adds and"
     );
     println!("one division a point:\n");
     for (name, side) in [("one span", 4), ("9 × 9 spans", PAPER)] {

@@ -41,7 +41,8 @@ pub fn against_copies(gpu: &Gpu) -> Result<(), GpuError> {
         2.0 * written * 1e-9
     );
     println!(
-        "| points of one dispatch | variant | Gpoints/s | GB/s at 12 B | of what copies write | of what they read and write |"
+        "| points of one dispatch | variant | Gpoints/s | GB/s at 12 B | of what copies write | of what \
+         they read and write |"
     );
     println!("|---|---|---|---|---|---|");
     for (name, side, count, control) in [

@@ -64,7 +64,9 @@ impl FromStr for View {
                 }
                 Ok(Self::At { eye, target })
             }
-            _ => Err("neither iso, top, bottom, front, back, left or right nor six numbers eye,target (x,y,z,x,y,z)".into()),
+            _ => Err("neither iso, top, bottom, front, back, left or right nor six numbers eye,target \
+                (x,y,z,x,y,z)"
+                .into()),
         }
     }
 }

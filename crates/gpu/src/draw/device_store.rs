@@ -1,5 +1,5 @@
 //! What of a model stays on the device whatever the view: control points, knots and trimming curves, in as
-//! many sets as the limits of a binding ask for.
+//! many sets as the limits of a binding require.
 
 use crate::device::Gpu;
 use crate::error::{GpuError, Resource};

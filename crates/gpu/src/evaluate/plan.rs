@@ -1,4 +1,4 @@
-//! What one evaluation is: variant, wanted values, search; and the tables that it needs beside the surfaces.
+//! One evaluation: its variant, requested values and search, and the tables it needs beside the surfaces.
 
 use crate::error::{GpuError, Unsuitable};
 use crate::layout::{Params, Row};

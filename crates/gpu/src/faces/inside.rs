@@ -6,7 +6,7 @@
 //! only, so that a ray through a joint counts once.
 //!
 //! A map of square cells over the unit square comes first: cells that no loop enters are known to be inside
-//! or outside as a whole. Only points in the others, a few in a hundred, ask for pieces.
+//! or outside as a whole. Only points in the other cells, a few per cent, are tested against pieces.
 
 use super::pieces::Cubic;
 

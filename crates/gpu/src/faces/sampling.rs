@@ -45,8 +45,8 @@ pub(crate) fn errors_served(face: &TrimmedFace, steps: [f64; 2]) -> [f64; 2] {
     [a.max(c), b.min(d)]
 }
 
-/// The face's parameters along u and v, native, in so many steps. Knot lines across which the surface has a
-/// kink are among them.
+/// The native parameters of the face along u and v, in `steps` steps. Knot lines across which the surface has
+/// a kink are among them.
 pub(crate) fn grid(face: &TrimmedFace, steps: [f64; 2]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| spread(face.uv.min[axis], face.uv.max[axis], &face.kinks[axis], steps[axis]))
 }

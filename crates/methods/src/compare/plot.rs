@@ -39,7 +39,8 @@ pub fn plot(comparison: &Comparison) -> String {
     let width = LEFT + 2.0 * PANEL + 2.0 * GAP;
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+         font-family=\"sans-serif\" font-size=\"12\">\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
     let title = format!("{}, tolerance {:.4} mm", comparison.model, comparison.tolerance);
     let _ = writeln!(out, "<text x=\"8\" y=\"20\" font-size=\"14\">{}</text>", escaped(&title));
@@ -74,7 +75,8 @@ fn bars(out: &mut String, panel: &Panel, rows: &[ComparedRow]) {
             let _ = writeln!(
                 out,
                 "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"#ccc\"/>\
-                 <text x=\"{at:.1}\" y=\"{}\" fill=\"#777\" font-size=\"10\" text-anchor=\"middle\">{}</text>",
+                 <text x=\"{at:.1}\" y=\"{}\" fill=\"#777\" font-size=\"10\" \
+                 text-anchor=\"middle\">{}</text>",
                 TOP - 4.0,
                 math::powi(10.0, decade)
             );

@@ -91,7 +91,8 @@ mod tests {
             distance in 0.01f64..0.6,
         ) {
             let mut at = DVec2::ZERO;
-            let points: Vec<DVec2> = steps.iter().map(|&(x, y)| { at += DVec2::new(x - 0.2, y); at }).collect();
+            let points: Vec<DVec2> =
+                steps.iter().map(|&(x, y)| { at += DVec2::new(x - 0.2, y); at }).collect();
             let kept = simplified(&points, distance);
             let shorter: Vec<DVec2> = kept.iter().map(|&i| points[i]).collect();
             prop_assert_eq!((kept[0], kept[kept.len() - 1]), (0, points.len() - 1));

@@ -241,7 +241,8 @@ mod tests {
                 let p = DVec2::new(x, y);
                 if on_grid { (p * 8.0).round() / 8.0 } else { p }
             };
-            let loops: Vec<Vec<DVec2>> = loops.into_iter().map(|l| l.into_iter().map(place).collect()).collect();
+            let loops: Vec<Vec<DVec2>> =
+                loops.into_iter().map(|l| l.into_iter().map(place).collect()).collect();
             let found = untangled(&loops);
             prop_assert!(!found.is_unfinished);
             let sides: Vec<[DVec2; 2]> = found.loops.iter()

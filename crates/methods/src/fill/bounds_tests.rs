@@ -35,7 +35,8 @@ proptest! {
     /// Kahlesz, Balázs, Klein 2001, Lemma 1: at equal parameters both pairs of triangles are off by ¼‖T‖, and
     /// no more anywhere.
     #[test]
-    fn lemma_1_is_exact_for_either_diagonal(c in prop::collection::vec((-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0), 4)) {
+    fn lemma_1_is_exact_for_either_diagonal(c in prop::collection::vec((-1.0f64..1.0, -1.0f64..1.0,
+        -1.0f64..1.0), 4)) {
         let s = twisted(&c);
         let bound = 0.25 * Bilinear::new(&s).twist().length();
         let corner = |u: f64, v: f64| s.point(DVec2::new(u, v));
@@ -77,7 +78,8 @@ proptest! {
         let found = largest_off_bilinear(&s, 16);
         prop_assert!(found <= bound * (1.0 + 1e-9) + 1e-12, "{found} > {bound}");
         let weighted = NurbsSurface::new(
-            s.degree(), s.knots_u().to_vec(), s.knots_v().to_vec(), s.points().to_vec(), Some(vec![2.5; s.points().len()]),
+            s.degree(), s.knots_u().to_vec(), s.knots_v().to_vec(), s.points().to_vec(),
+                Some(vec![2.5; s.points().len()]),
         ).expect("legal");
         let lemma_2 = Flatness::new(&weighted, Measure::Conservative).bilinear;
         prop_assert!(off_bilinear(&weighted) <= lemma_2 * (1.0 + 1e-12));

@@ -71,10 +71,10 @@ pub struct Coving {
 /// All cells are halved at most this often.
 const HALVINGS: usize = 2;
 
-/// A grid gets twice as many lines in one direction at most this often, for want of room.
+/// How often a grid that has no cell clear of the loops gets twice as many lines in one direction.
 const DOUBLINGS: usize = 4;
 
-/// No grid gets more cells than this for want of room.
+/// A grid is not refined beyond this many cells to find cells clear of the loops.
 const MOST_CELLS: usize = 40_000;
 
 impl Coving {

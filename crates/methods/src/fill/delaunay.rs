@@ -55,7 +55,7 @@ const FIRST_LINES: usize = 8;
 /// Triangles that the proof found too coarse are restricted to this share of what they were before.
 const TIGHTER: f64 = 0.6;
 
-/// How often the proof may ask for more points. Limits of angle are not reached by size, so more rounds would
+/// How often the proof may request more points. Limits of angle are not reached by size, so more rounds would
 /// not help.
 const MOST_REFINED: usize = 3;
 

@@ -303,9 +303,12 @@ mod tests {
         /// Any set of cells of a grid, bounded by trimming edges, some with a hole inside: each cell is
         /// found, nothing else.
         #[test]
-        fn sets_of_cells_with_holes_are_covered(kept in prop::collection::vec(0u8..4, 36), turn in 0.0f64..6.3) {
-            let mut points: Vec<DVec2> = (0..49).map(|k| DVec2::new(f64::from(k % 7), f64::from(k / 7))).collect();
-            let is_kept = |i: i32, j: i32| (0..6).contains(&i) && (0..6).contains(&j) && kept[(6 * j + i) as usize] > 0;
+        fn sets_of_cells_with_holes_are_covered(kept in prop::collection::vec(0u8..4, 36),
+            turn in 0.0f64..6.3) {
+            let mut points: Vec<DVec2> =
+                (0..49).map(|k| DVec2::new(f64::from(k % 7), f64::from(k / 7))).collect();
+            let is_kept = |i: i32,
+                j: i32| (0..6).contains(&i) && (0..6).contains(&j) && kept[(6 * j + i) as usize] > 0;
             let node = |i: i32, j: i32| (7 * j + i) as u32;
             let (mut trimming, mut borders) = (Vec::new(), Vec::new());
             let mut side = |a: u32, b: u32, left: bool, right: bool| match (left, right) {
@@ -326,7 +329,8 @@ mod tests {
                 // Up to two holes in a cell.
                 for hole in 2..what.max(1) + 1 {
                     let first = points.len() as u32;
-                    let middle = DVec2::new((k % 6) as f64, (k / 6) as f64) + [0.3, 0.7][usize::from(hole - 2)];
+                    let middle =
+                        DVec2::new((k % 6) as f64, (k / 6) as f64) + [0.3, 0.7][usize::from(hole - 2)];
                     let corners = (0..3).map(|c| middle + 0.2 * math::direction(turn - 2.1 * f64::from(c)));
                     points.extend(corners);
                     trimming.extend(ring(first, 3));
@@ -344,7 +348,9 @@ mod tests {
             }
             // Every trimming edge belongs to one polygon, every border to two.
             let sides: usize = found.polygons.iter().map(|p| p.nodes.len()).sum();
-            prop_assert_eq!(sides, trimming.len() + 2 * borders.len() + found.polygons.iter().map(|p| bridged(p, &trimming, &borders)).sum::<usize>());
+            prop_assert_eq!(sides,
+                trimming.len() + 2 * borders.len()
+                    + found.polygons.iter().map(|p| bridged(p, &trimming, &borders)).sum::<usize>());
         }
     }
 

@@ -10,8 +10,8 @@
 //! T = P_00 − P_m0 − P_0n + P_mn     (i/m and j/n where the piece is Bézier; splines reproduce bilinear maps
 //!                                   at these)
 //! error ≤ E + ¼‖T‖                  polynomial, for the two halves of the node
-//! error ≤ E + ½‖T‖                  rational with positive weights: the weights pull points along the bilinear
-//!                                   surface
+//! error ≤ E + ½‖T‖                  rational with positive weights: the weights move points along the
+//!                                   bilinear surface
 //! ```
 //!
 //! The *estimated* error puts S(ξ_i, η_j) in place of P_ij: a sample, no bound.
@@ -230,7 +230,8 @@ mod tests {
         ) {
             let points: Vec<DVec3> = net.iter().map(|&(x, y, z, _)| DVec3::new(x, y, z)).collect();
             let weights = rational.then(|| net.iter().map(|p| math::pow(10.0, p.3)).collect());
-            let s = NurbsSurface::new([3, 2], clamped(3, &[0.4]), clamped(2, &[0.7]), points, weights).expect("valid");
+            let s = NurbsSurface::new([3, 2], clamped(3, &[0.4]), clamped(2, &[0.7]), points, weights)
+                .expect("valid");
             let f = Flatness::new(&s, Measure::Conservative);
             let corner = |u: f64, v: f64| s.point(DVec2::new(u, v));
             let (a, b, c, d) = (corner(0., 0.), corner(1., 0.), corner(1., 1.), corner(0., 1.));

@@ -370,7 +370,8 @@ mod tests {
             let mut loops = vec![(0..points.len() as u32).collect::<Vec<u32>>()];
             for (i, radii) in holes.iter().enumerate() {
                 let start = points.len() as u32;
-                let middle = [DVec2::new(1.5, 0.3), DVec2::new(-1.4, 0.2), DVec2::new(0.1, 1.6), DVec2::new(0.2, -1.7)][i];
+                let middle = [DVec2::new(1.5, 0.3), DVec2::new(-1.4, 0.2), DVec2::new(0.1, 1.6),
+                    DVec2::new(0.2, -1.7)][i];
                 points.extend(star(middle, radii).into_iter().rev());
                 loops.push((start..points.len() as u32).collect());
             }
@@ -401,15 +402,18 @@ mod tests {
         /// complete, and recognised as convex.
         #[test]
         fn convex_polygons_are_cut_completely(
-            angles in prop::collection::vec(0.0..std::f64::consts::TAU, 3..20), stretch in 0.01f64..100.0, dent: bool,
+            angles in prop::collection::vec(0.0..std::f64::consts::TAU, 3..20), stretch in 0.01f64..100.0,
+                dent: bool,
         ) {
             let mut angles = angles;
             angles.sort_unstable_by(f64::total_cmp);
             angles.dedup_by(|a, b| *a - *b < 0.05);
             // The middle must be inside, so that a dent is one.
-            let around = angles.windows(2).map(|w| w[1] - w[0]).fold(angles[0] + 6.29 - angles[angles.len() - 1], f64::max);
+            let around = angles.windows(2).map(|w| w[1] - w[0])
+                .fold(angles[0] + 6.29 - angles[angles.len() - 1], f64::max);
             prop_assume!(angles.len() >= 4 && around < 3.0);
-            let mut points: Vec<DVec2> = angles.iter().map(|&a| math::direction(a) * DVec2::new(stretch, 1.0)).collect();
+            let mut points: Vec<DVec2> =
+                angles.iter().map(|&a| math::direction(a) * DVec2::new(stretch, 1.0)).collect();
             if dent {
                 points[1] *= 0.01;
             }
@@ -423,7 +427,8 @@ mod tests {
             if brute {
                 let triangles = zigzag(&points, &polygon);
                 prop_assert_eq!(triangles.len(), points.len() - 2);
-                let whole: f64 = (0..points.len()).map(|i| 0.5 * points[i].perp_dot(points[(i + 1) % points.len()])).sum();
+                let whole: f64 =
+                    (0..points.len()).map(|i| 0.5 * points[i].perp_dot(points[(i + 1) % points.len()])).sum();
                 prop_assert!((area(&points, &triangles) - whole).abs() < 1e-9 * whole);
             }
         }

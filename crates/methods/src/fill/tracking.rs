@@ -292,7 +292,8 @@ mod tests {
     proptest! {
         #[test]
         fn chains_are_followed_to_their_ends(
-            net in prop::collection::vec((0.0f64..1.0, 0.0f64..1.0, -1.0f64..1.0), 7), rational in any::<bool>(),
+            net in prop::collection::vec((0.0f64..1.0, 0.0f64..1.0, -1.0f64..1.0), 7),
+                rational in any::<bool>(),
             on_lines in any::<bool>(),
         ) {
             // Corners on multiples of 1/16 lie on borders and vertices often.

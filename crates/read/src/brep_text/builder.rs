@@ -29,7 +29,7 @@ pub(crate) struct Builder<'d> {
     pub edges: FxHashMap<(Ix, Loc), Result<EdgeId, ReadIssue>>,
     patches: FxHashMap<(i64, Loc), Result<PlacedPatch, ReadIssue>>,
     /// Uses of shapes that may still be followed: it bounds the work on files whose shapes use each other in
-    /// ever new places. An honest file needs about one for each use it states.
+    /// ever new places. Files of exporters need about one for each use they state.
     pub budget: usize,
 }
 

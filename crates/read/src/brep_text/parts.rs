@@ -22,7 +22,7 @@ pub(crate) struct Placed {
 /// A solid, shell or face that no shell uses, and whether it is turned over.
 type Item = (Ix, bool);
 
-/// Uses of shapes that are followed beyond one for each byte of an honest file.
+/// The number of uses of shapes that are followed, in addition to one for each byte of the file.
 const SPARE_USES: usize = 200_000;
 
 /// Builds all parts.

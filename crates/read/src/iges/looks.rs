@@ -44,7 +44,7 @@ pub(crate) fn name(doc: &Doc<'_>, ix: Ix) -> String {
     stated.unwrap_or_else(|| doc.entry(ix).label.clone())
 }
 
-/// How many parameters of its own an entity has, of the types that are asked for names.
+/// The number of an entity's own parameters, for the types that may have names.
 fn own_parameters(doc: &Doc<'_>, ix: Ix) -> Option<usize> {
     let mut args = doc.open(ix).ok()?;
     let mut number = |skip: usize| {

@@ -1,4 +1,4 @@
-//! Outer boundaries that do not close and run along the border of their surface: what is left out is the rest
+//! Outer boundaries that do not close and run along the border of their surface: the missing part is the rest
 //! of it.
 //!
 //! Some writers leave out the side of a patch at which the whole surface closes, and approximate what they do

@@ -11,7 +11,7 @@ use chordal_nurbs::{Curve, DAffine3, NurbsCurve3, NurbsError, NurbsSurface, Surf
 /// Knots of the two curves that are nearer than this (over 0..=1) are one.
 const SAME_KNOT: f64 = 1e-9;
 
-/// 118: two curves, whether the second is run backwards, whether the surface is developable. Form 0 asks for
+/// 118: two curves, whether the second is run backwards, whether the surface is developable. Form 0 requires
 /// equal shares of the length: for lines and arcs the same.
 pub(crate) fn surface(doc: &Doc<'_>, ix: Ix) -> Res<(Surface, UvBox)> {
     let mut args = doc.open(ix)?;
@@ -71,7 +71,7 @@ fn compatible(mut a: NurbsCurve3, mut b: NurbsCurve3) -> Result<(NurbsCurve3, Nu
     Ok((a.refine(&to_a)?, b.refine(&to_b)?))
 }
 
-/// What of `wanted` is not in `knots`; both in increasing order.
+/// The elements of `wanted` that are not in `knots`; both are in increasing order.
 fn missing(knots: &[f64], wanted: &[f64]) -> Vec<f64> {
     let mut left = knots.iter().peekable();
     let mut list = Vec::new();

@@ -22,7 +22,7 @@ pub(crate) struct Placed {
     pub roots: Vec<NodeId>,
 }
 
-/// More nodes than this are no honest file's.
+/// The number of nodes after which the tree is not followed: no exporter's file has more.
 const MOST_NODES: usize = 200_000;
 
 /// Subfigures within subfigures, deeper than this, refer in a circle.
@@ -82,17 +82,18 @@ fn used(doc: &Doc<'_>) -> FxHashSet<Ix> {
     used
 }
 
-/// What an entity is made of; those that are broken name what can be read.
+/// The entities that an entity refers to; of a broken entity, those that can be read.
 fn references(doc: &Doc<'_>, ix: Ix) -> Res<Vec<Ix>> {
     let kind = doc.kind(ix);
-    if !matches!(kind, 102 | 108 | 118 | 120 | 122 | 130 | 140..=144 | 186 | 190..=198 | 308 | 504 | 508 | 510 | 514)
-    {
+    let is_known = matches!(kind, 102 | 108 | 118 | 120 | 122 | 130 | 140..=144 | 186 | 190..=198 | 308)
+        || matches!(kind, 504 | 508 | 510 | 514);
+    if !is_known {
         return Ok(Vec::new());
     }
     let mut args = doc.open(ix)?;
     let mut found = Vec::new();
-    // `-`: a parameter that is no reference; `+`: a reference; `n`: a number of rounds of the letters behind
-    // it.
+    // `-` is a parameter that is no reference, `+` a reference, and `n` the number of repetitions of the
+    // letters that follow.
     let (head, rounds) = match kind {
         102 => ("n", "+"),
         108 => ("----+", ""),

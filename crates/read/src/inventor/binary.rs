@@ -3,7 +3,7 @@
 //! All words have four bytes, the first one highest; texts are a length, the bytes, and zeros up to a
 //! multiple of four. A node is its type, flags (2.1), the number of its fields, each with a name, value and
 //! flags, and for a group the number of its children and these. Nothing says where a node ends, so that a
-//! node nobody knows ends what can be read.
+//! unknown node ends the readable part.
 
 use super::fields::{self, FieldType, Layout};
 use crate::scene::graph::{Graph, Node, NodeIx, Value};

@@ -118,7 +118,7 @@ fn runs(node: &Node, field: &str, points: usize) -> Vec<f64> {
     let mut index = Vec::new();
     let mut at = start;
     for &count in counts.iter() {
-        // −1 takes what is left.
+        // −1 stands for all remaining ones.
         let count = if count < 0.0 { points.saturating_sub(at) } else { count as usize };
         let end = at.saturating_add(count).min(points);
         index.extend((at..end).map(|i| i as f64));

@@ -167,11 +167,13 @@ fn faces_without_sense_fail_with_a_reason() {
 #[test]
 fn solids_are_exact_and_polygons_pass_through() {
     let model = read(
-        "Translation { translation 1 2 3 } Cube { width 1 } Sphere { } Cone { parts (SIDES) } Cylinder { parts ALL }
+        "Translation { translation 1 2 3 } Cube { width 1 } Sphere { } Cone { parts (SIDES) } Cylinder { \
+         parts ALL }
          Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }
          IndexedFaceSet { coordIndex [ 0 1 2 3 -1 0 1 2 ] }
          ShapeHints { vertexOrdering CLOCKWISE } FaceSet { numVertices 3 }
-         Array { numElements1 3 separation1 1 0 0 Separator { QuadMesh { verticesPerRow 2 verticesPerColumn 2 } } }
+         Array { numElements1 3 separation1 1 0 0 Separator { QuadMesh { verticesPerRow 2 verticesPerColumn \
+         2 } } }
          Switch { Cube { } } Switch { whichChild 0 Sphere { } }
          DEF Text Text3 { string \"hi\" } PointSet { }",
     );
@@ -284,7 +286,8 @@ fn files_cut_anywhere_are_read_up_to_there_or_refused() {
     let binary = binary_patch();
     let text = format!(
         "#Inventor V2.1 ascii\nDEF A Separator {{ {} ProfileCoordinate2 {{ point [ 0 0 1 0 1 1 ] }}
-         LinearProfile {{ index [ 0, 1, 2, 0 ] }} {PATCH} Info {{ string \"a\\\"b\" }} Switch {{ whichChild -3 USE A }} }} USE A",
+         LinearProfile {{ index [ 0, 1, 2, 0 ] }} {PATCH} Info {{ string \"a\\\"b\" }} Switch {{ whichChild \
+         -3 USE A }} }} USE A",
         coordinates(1.0)
     );
     for whole in [binary.as_slice(), text.as_bytes()] {

@@ -1,4 +1,4 @@
-//! Knot vectors as these formats leave them out, shorten them or close them.
+//! Knot vectors, which these formats may omit, shorten or close.
 
 use chordal_brep::{ReadIssue, Real};
 /// One parameter direction of a spline.

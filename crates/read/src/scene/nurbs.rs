@@ -7,7 +7,7 @@ use chordal_nurbs::{Curve2, DVec2, DVec3, DVec4, NurbsCurve2, NurbsSurface};
 /// Control points nearer together than this share of the net's size are one: files hold 32-bit numbers.
 const ONE_POINT: f64 = 1e-6;
 
-/// What six digits leave open, as a share of the net's size, and a little more for weights of six digits.
+/// The rounding of six digits, as a fraction of the net's size, and a little more for weights of six digits.
 const ROUNDED: f64 = 4e-6;
 
 /// A control net as a node gives it; points are (wx, wy, wz, w).
@@ -70,8 +70,8 @@ pub(crate) fn surface(net: &Net<'_>) -> Result<(NurbsSurface, Vec<ReadIssue>), R
     Ok((surface, notes))
 }
 
-/// Files of these formats hold about six digits. Sides that differ by less than they can say are meant to be
-/// one point (a pole), or to meet: they are made to.
+/// Files of these formats hold about six digits. Sides that differ by less than six digits can express are
+/// meant to be one point (a pole), or to meet: they are made to.
 fn join_rounded(points: &mut [DVec3], directions: &[&Direction; 2]) {
     let size = points.iter().fold(0.0, |d: f64, p| d.max((*p - points[0]).abs().max_element()));
     let near = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= ROUNDED * size;

@@ -1,14 +1,14 @@
 //! The text encodings of Inventor, VRML and X3D as a graph of nodes.
 //!
-//! Fields are told from nodes by what follows a word: `{` makes it the type of a node. The type of a field's
-//! value is what it looks like, so that nodes nobody knows are read past without harm. Names hold from their
-//! DEF on, until another one takes them.
+//! Fields and nodes are distinguished by what follows a word: `{` makes it the type of a node. The type of a
+//! field's value is what it looks like, so that unknown nodes can be skipped. Names hold from their DEF on,
+//! until another one takes them.
 
 use super::graph::{Graph, Node, NodeIx, Prototype, Value};
 use super::lexer::{Lexer, Token};
 use chordal_brep::{ReadIssue, Source};
 
-/// Nodes within nodes deeper than this are left out.
+/// Nodes nested deeper than this are ignored.
 const MAX_DEPTH: u32 = 400;
 
 /// The graph of a text file, as much of it as can be understood.

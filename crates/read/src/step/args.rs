@@ -22,7 +22,7 @@ pub(crate) enum Kind {
     List,
     /// `NAME(…)`
     Typed,
-    /// Nothing that Part 21 knows.
+    /// Nothing that Part 21 defines.
     Junk,
 }
 
@@ -116,7 +116,7 @@ impl<'d> Args<'d> {
         }
     }
 
-    /// The number of attributes left.
+    /// The number of remaining attributes.
     pub(crate) fn left(&self) -> usize {
         let mut rest = self.clone();
         let mut count = 0;
@@ -368,7 +368,7 @@ impl<'d> Args<'d> {
         Ok(found)
     }
 
-    /// As [`Args::references`]; what leads nowhere is left out with a warning.
+    /// As [`Args::references`]; references to nothing are ignored with a warning.
     pub(crate) fn references_or_warn(&mut self) -> Vec<Ix> {
         match self.references() {
             Ok(list) => {

@@ -332,7 +332,7 @@ fn is_silent(kw: Kw) -> bool {
     )
 }
 
-/// Items that say something about a shape rather than being one.
+/// Items that describe a shape but are none.
 fn is_text_or_view(name: &str) -> bool {
     [
         "MEASURE",

@@ -2,8 +2,8 @@
 //!
 //! ISO 10303-42 lists the pieces of a composite curve in order, each with its sense. Files list them in any
 //! order and with any sense (Creo's do), so the ends decide. The pieces keep the file's curves in the
-//! parameter space of the surface: on a cone with two nappes or across a seam nothing else says which part of
-//! the surface is meant.
+//! parameter space of the surface: on a cone with two nappes or across a seam nothing else determines which
+//! part of the surface is meant.
 
 use super::builder::Builder;
 use super::document::{Ix, Res};
@@ -135,7 +135,8 @@ struct Chained {
 /// meet.
 ///
 /// Pieces that meet already stay as they are. Else the chain begins with the first piece, and takes each time
-/// the piece with the end nearest to where the chain ends; in the end most pieces run as the file says.
+/// the piece with the end nearest to where the chain ends; in the end most pieces have the direction that the
+/// file states.
 fn chained(mut pieces: Vec<Piece>, tolerance: f64) -> (Vec<Piece>, Chained) {
     let count = pieces.len();
     let meets = (0..count).all(|i| pieces[i].end().distance(pieces[(i + 1) % count].start()) <= tolerance);

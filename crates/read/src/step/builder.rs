@@ -83,7 +83,7 @@ impl<'d> Builder<'d> {
         id
     }
 
-    /// Notes what is wrong with something that is left out.
+    /// Records why something is ignored.
     pub(crate) fn warn_bad(&self, bad: &Bad) {
         self.doc.warn_bad(bad);
     }

@@ -9,7 +9,7 @@ use chordal_nurbs::Range;
 use std::sync::Arc;
 
 impl Builder<'_> {
-    /// Closes a loop. Each step is tried only where the ones before left breaks.
+    /// Closes a loop. Each step is tried only if gaps remain after the steps before it.
     pub(crate) fn mend_chain(&mut self, ix: Ix, coedges: &mut Vec<Coedge>) {
         if self.build.breaks(coedges) > 0 {
             self.mend_broken_chain(ix, coedges);
@@ -41,9 +41,10 @@ impl Builder<'_> {
 
     /// Mends coedges that fit only the other way round.
     ///
-    /// On an open curve the vertices tell which way the edge runs, so the flag of the use is wrong. On a
-    /// closed one they do not: there it is the edge, rather than each of its uses, that has its two vertices
-    /// exchanged, and the other part of the curve is meant; unless an earlier loop was content with it.
+    /// On an open curve the vertices determine the direction of the edge, so the flag of the use is wrong. On
+    /// a closed one they do not: there it is the edge, rather than each of its uses, that has its two
+    /// vertices exchanged, and the other part of the curve is meant; unless an earlier loop was content with
+    /// it.
     fn turn_misfits(&mut self, ix: Ix, coedges: &mut [Coedge]) {
         let count = coedges.len();
         for i in 0..count {

@@ -406,11 +406,11 @@ impl Trim {
     }
 }
 
-/// The range from one parameter to another, unwrapped on a periodic curve; the flag tells that an open
+/// The range from one parameter to another, unwrapped on a periodic curve; the flag is true if an open
 /// curve's parameters came in the wrong order. `None` where they are equal.
 fn between(curve: &Curve, from: f64, to: f64) -> Option<(Range, bool)> {
     if let Some(period) = curve.period() {
-        // Beyond this many turns an angle has too few digits left to mean anything.
+        // Beyond this many turns, the remaining digits of an angle have no meaning.
         if !(from - to).is_finite() || from.abs().max(to.abs()) > 1e9 * period {
             return None;
         }

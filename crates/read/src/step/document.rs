@@ -31,7 +31,7 @@ pub(crate) struct Doc<'a> {
     pub lines: u32,
     pub notes: Notes,
     /// Entities that may still be opened. It bounds the work on files whose references fan out for ever; an
-    /// honest file needs about one opening per reference, and a reference takes at least three bytes.
+    /// exporter's file needs about one opening per reference, and a reference takes at least three bytes.
     budget: Cell<u64>,
 }
 
@@ -125,7 +125,7 @@ impl<'a> Doc<'a> {
         self.bad(ix, ReadIssue::Recursive { keyword: self.word(ix), levels })
     }
 
-    /// The keyword for messages, as the file spells it where this program does not know it.
+    /// The keyword for messages; an unknown one as it is spelled in the file.
     pub(crate) fn word(&self, ix: Ix) -> Word {
         match self.kw(ix) {
             Kw::Unknown => self.written_name(ix).into(),

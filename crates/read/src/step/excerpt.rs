@@ -15,14 +15,15 @@ use super::scan::string_end;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Entities that are looked at on the way to the representation of a face: a bound for files that nest
-/// endlessly.
+/// The number of entities visited in the search for the representation of a face. Only files with recursive
+/// references reach it; their excerpt has no representation.
 const MOST_VISITS: usize = 20_000_000;
 
-const HEADER: &str = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n\
+const HEADER: &str = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n\
+    FILE_NAME('','',(''),(''),'','','');\n\
     FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n";
 
-/// The faces with these numbers as a file; numbers that the file does not have are left out.
+/// The faces with these numbers as a file; numbers that the file does not have are ignored.
 pub(crate) fn excerpt(bytes: &[u8], faces: &[u64]) -> String {
     let doc = Doc::new(bytes);
     let source = Source { bytes, doc: &doc };

@@ -24,7 +24,7 @@ pub(crate) struct Trimmed {
     pub loops: Vec<Loop>,
 }
 
-/// What the attributes of a face entity say.
+/// The attributes of a face entity.
 struct FaceData {
     name: String,
     bounds: Res<Vec<Ix>>,
@@ -222,7 +222,7 @@ impl Builder<'_> {
         if coedges.is_empty() && lost.is_empty() {
             return Err(self.doc.bad(ix, ReadIssue::NoEdges));
         }
-        // Where at least as many edges are left as are lost, straight ones take their places below.
+        // If at least half of the edges remain, straight ones replace the missing ones below.
         match lost.into_iter().next() {
             Some(bad) if coedges.len() < 2 || coedges.len() < edges - coedges.len() => return Err(bad),
             Some(bad) => {

@@ -1,4 +1,4 @@
-//! The entity names that the reader knows, as an enum.
+//! The entity names that the reader supports, as an enum.
 
 use rustc_hash::FxHashMap;
 

@@ -18,7 +18,7 @@ pub(crate) struct Styles {
     pub in_context: Vec<(Ix, Vec<Ix>, Color)>,
 }
 
-/// What the styles of one item say about surfaces.
+/// The styles of one item that concern surfaces.
 #[derive(Clone, Copy, Debug, Default)]
 struct Found {
     fill: Option<[f64; 3]>,

@@ -145,7 +145,7 @@ fn pick(args: &Args<'_>, points: &[DVec3], index: i64) -> Res<DVec3> {
     found.copied().ok_or_else(|| args.wrong(ReadIssue::NotFound { what: "point", number: index }))
 }
 
-/// Corners counted from one; degenerate triangles and those with a corner outside the list are left out.
+/// Corners counted from one; degenerate triangles and those with a corner outside the list are omitted.
 fn triangle(corners: &[i64], count: usize) -> Option<[u32; 3]> {
     let &[a, b, c] = corners else { return None };
     let index = |i: i64| u32::try_from(i - 1).ok().filter(|&i| (i as usize) < count);

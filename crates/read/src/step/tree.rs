@@ -172,7 +172,7 @@ impl<'d> Tree<'d> {
         shape
     }
 
-    /// Millimetres per unit of a representation; `otherwise` where it does not say.
+    /// Millimetres per unit of a representation; `otherwise` if it states none.
     fn rep_mm(&mut self, rep: Ix, otherwise: f64) -> f64 {
         self.shape(rep).and_then(|shape| shape.mm).unwrap_or(otherwise)
     }

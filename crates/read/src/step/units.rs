@@ -41,7 +41,7 @@ impl Units {
         Millimetres(length * self.length_mm)
     }
 
-    /// The units of a context entity; what it does not say is millimetres and radians.
+    /// The units of a context entity; missing units are millimetres and radians.
     pub(crate) fn of_context(doc: &Doc<'_>, context: Ix) -> Self {
         let mut units = Self::default();
         let mut found_length = false;

@@ -1,11 +1,11 @@
-//! Loops that leave the surface, cut off where it ends.
+//! Loops that leave the surface are cut at its border.
 //!
 //! Each such loop is cut where it crosses the border of the domain. What remains of it inside are chords from
 //! border to border with the material on their left; from the end of a chord the new outline follows the
 //! border, the domain on its left as well, to where the next chord begins (after Weiler and Atherton, for one
 //! of the polygons a rectangle).
 //!
-//! Not guaranteed: loops that cross each other are not told from loops that do not.
+//! Not guaranteed: loops that cross each other are not recognised as such.
 
 use super::chain::Chain;
 use super::polygon::{area, contains};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Loops nearer to the border than this share of the domain run along it.
 const ON_BORDER: f64 = 1e-6;
 
-/// Chords end on the border within this share of the domain: what bisection leaves.
+/// Chords end on the border within this share of the domain: the accuracy of the bisection.
 const AT_BORDER: f64 = 1e-9;
 
 /// Halvings of a span before a root is taken for found: those of 64-bit parameters.

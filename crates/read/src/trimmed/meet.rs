@@ -5,7 +5,7 @@
 //! 3. Each find is carried over to the exact curves by Newton's method.
 //!
 //! Not guaranteed: two curves that cross twice within [`FLAT`] of each other may be taken not to meet. The
-//! mesher finds what is left.
+//! mesher finds the others.
 
 use super::chain::Chain;
 use super::{Piece, Scale};

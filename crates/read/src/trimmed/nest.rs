@@ -39,7 +39,7 @@ pub(super) fn groups(surface: &Surface, chains: Vec<Chain>, scale: &Scale) -> Re
     let Untangled { chains, whole: unbounded, rebuilt } = untangled(chains, scale);
     let whole = whole || unbounded;
     if chains.is_empty() && !whole {
-        // Loops that run to and fro: the face has no area, and is left to the mesher as it is.
+        // Loops that run back along themselves: the face has no area, and the mesher gets it unchanged.
         let no_area = |c: &Chain| c.role != Role::Hole && area(&c.polygon(scale)).abs() <= NO_AREA;
         let flat: Vec<Chain> = given.into_iter().filter(no_area).collect();
         if flat.is_empty() {
@@ -176,7 +176,7 @@ fn roles(nested: &[Nested]) -> Vec<bool> {
 
 /// True where most of the points lie inside the polygon.
 fn inside(points: &[DVec2], polygon: &[DVec2]) -> bool {
-    // A few points tell: loops do not cross.
+    // A few points suffice, since loops do not cross.
     let step = points.len().div_ceil(32);
     let seen: Vec<bool> = points.iter().step_by(step).map(|&p| contains(polygon, p)).collect();
     2 * seen.iter().filter(|&&inside| inside).count() > seen.len()

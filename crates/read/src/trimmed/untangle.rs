@@ -4,19 +4,19 @@
 //! the region that their winding numbers describe ([`chordal_brep::winding`]) is put together from the cut
 //! pieces, which stay the exact curves of the file.
 //!
-//! Which points belong to the face, where a *loop goes round* a point if it winds round it an odd number of
-//! times:
+//! A loop *encircles* a point if its winding number round the point is odd. A point belongs to the face:
 //!
-//! | the format | inside |
+//! | the format, the convention | if |
 //! |---|---|
-//! | tells outer loops from holes | more outer loops than holes go round it |
-//! | does not; odd convention | as above, where loops cross and run both ways ([`direction`]); else an odd number of loops goes round it |
-//! | does not; even convention | an even number of loops goes round it |
+//! | distinguishes outer loops from holes | more outer loops than holes encircle the point |
+//! | does not; odd; crossing loops of both directions ([`direction`]) | the same |
+//! | does not; odd; otherwise | an odd number of loops encircles the point |
+//! | does not; even | an even number of loops encircles the point |
 //!
 //! Chains that meet nowhere but bound the region as they are come back unchanged, so that sound files keep
 //! their loops.
 //!
-//! Not guaranteed: loops round a period of the surface are left alone, and loops are not compared across its
+//! Not guaranteed: loops round a period of the surface are not changed, and loops are not compared across its
 //! seam.
 
 mod direction;
@@ -145,7 +145,7 @@ impl Cut<'_> {
         self.flat.piece.at(from + (to - from) * share)
     }
 
-    /// The piece itself, run as asked, between two points; a straight one ends in them exactly.
+    /// The piece in the requested direction, between two points; a straight one ends exactly in them.
     fn piece(&self, forward: bool, ends: [DVec2; 2]) -> Piece {
         let whole = self.flat.piece;
         let straight = self.flat.points.len() == 2 || matches!(whole.curve.as_ref(), Curve2::Line { .. });
@@ -271,7 +271,7 @@ fn runs_through(cut: &[Cut<'_>], index: usize, p: DVec2, scale: &Scale) -> bool 
     off(0.5 * (low + high)) <= 2.0 * ONE_PLACE
 }
 
-/// True where each chain bounds the region all along, and on the side that its role promises: then nothing is
+/// True where each chain bounds the region all along, and on the side that its role requires: then nothing is
 /// to be mended.
 fn is_as_given(strands: &[Strand], sides: &[[bool; 2]], chains: &[Chain]) -> bool {
     let mut seen: Vec<Option<[bool; 2]>> = vec![None; chains.len()];

@@ -6,7 +6,7 @@ use crate::trimmed::Look;
 use chordal_brep::Color;
 use chordal_nurbs::DAffine3;
 
-/// Where a node is, and what nodes above say of it.
+/// The placement of a node, and the properties it inherits from the nodes above.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place<'n> {
     pub transform: DAffine3,

@@ -41,7 +41,8 @@ const QUARTER_POINTS: &str =
 #[test]
 fn points_are_multiplied_by_their_weights_already() {
     let model = xml(&format!(
-        "<Shape><NurbsPatchSurface {QUARTER}><CoordinateDouble containerField='controlPoint' point='{QUARTER_POINTS}'/>
+        "<Shape><NurbsPatchSurface {QUARTER}><CoordinateDouble containerField='controlPoint' \
+         point='{QUARTER_POINTS}'/>
          </NurbsPatchSurface></Shape>"
     ));
     let found = surfaces(&model);
@@ -54,17 +55,20 @@ fn points_are_multiplied_by_their_weights_already() {
 
 #[test]
 fn both_encodings_and_vrml97_say_the_same() {
-    let body = "DEF Outer Transform { translation 1 2 3 rotation 0 0 1 1.5707963267948966 scale 2 2 2 center 1 0 0
-        children [ Shape { appearance Appearance { material DEF Red Material { diffuseColor 1 0 0 transparency .25 } }
+    let body = "DEF Outer Transform { translation 1 2 3 rotation 0 0 1 1.5707963267948966 scale 2 2 2 \
+        center 1 0 0
+        children [ Shape { appearance Appearance { material DEF Red Material { diffuseColor 1 0 0 \
+        transparency .25 } }
           geometry DEF Patch NurbsPatchSurface { uOrder 2 vOrder 2 uDimension 2 vDimension 2 ccw FALSE
             controlPoint Coordinate { point [ 0 0 0, 1 0 0, 0 2 0, 1 2 3 ] } } } ] }";
     let a = classic(body);
-    let b = xml(
-        "<Transform DEF='Outer' translation='1 2 3' rotation='0 0 1 1.5707963267948966' scale='2 2 2' center='1 0 0'>
+    let b =
+        xml("<Transform DEF='Outer' translation='1 2 3' rotation='0 0 1 1.5707963267948966' scale='2 2 2' \
+         center='1 0 0'>
           <Shape><Appearance><Material DEF='Red' diffuseColor='1 0 0' transparency='.25'/></Appearance>
           <NurbsPatchSurface DEF='Patch' uOrder='2' vOrder='2' uDimension='2' vDimension='2' ccw='false'>
-          <Coordinate containerField='controlPoint' point='0 0 0, 1 0 0, 0 2 0, 1 2 3'/></NurbsPatchSurface></Shape></Transform>",
-    );
+          <Coordinate containerField='controlPoint' point='0 0 0, 1 0 0, 0 2 0, 1 2 \
+          3'/></NurbsPatchSurface></Shape></Transform>");
     let vrml = body
         .replace("NurbsPatchSurface", "NurbsSurface")
         .replace("Coordinate { point [ 0 0 0, 1 0 0, 0 2 0, 1 2 3 ] }", "[ 0 0 0, 1 0 0, 0 2 0, 1 2 3 ]");
@@ -88,8 +92,10 @@ fn contours_cut_holes() {
         "Shape {{ geometry NurbsTrimmedSurface {{ uOrder 2 vOrder 2 uDimension 2 vDimension 2
            controlPoint Coordinate {{ point [ 0 0 0, 1 0 0, 0 2 0, 1 2 3 ] }}
            trimmingContour [ {} {}
-             Contour2D {{ children [ NurbsCurve2D {{ knot [ 0 0 0 1 1 1 ] controlPoint [ .6 .6, .9 .6, .9 .9 ] }}
-                                     ContourPolyline2D {{ controlPoint [ .9 .9, .6 .9, .6 .6 ] }} ] }} ] }} }}",
+             Contour2D {{ children [ NurbsCurve2D {{ knot [ 0 0 0 1 1 1 ] controlPoint [ .6 .6, .9 .6, .9 \
+             .9 ] }}
+                                     ContourPolyline2D {{ controlPoint [ .9 .9, .6 .9, .6 .6 ] }} ] }} ] }} \
+                                     }}",
         contour("0 0, 1 0, 1 1, 0 1, 0 0"),
         contour(".2 .2, .2 .4, .4 .4, .4 .2"),
     ));
@@ -127,7 +133,8 @@ fn closed_directions_without_knots_are_periodic() {
     let row = |z: f64| ring.iter().map(|p| format!("{} {} {z}, ", p[0], p[1])).collect::<String>();
     for (closed, period) in [("TRUE", true), ("FALSE", false)] {
         let model = classic(&format!(
-            "Shape {{ geometry NurbsPatchSurface {{ uClosed {closed} uOrder 4 vOrder 2 uDimension 7 vDimension 2
+            "Shape {{ geometry NurbsPatchSurface {{ uClosed {closed} uOrder 4 vOrder 2 uDimension 7 \
+             vDimension 2
                controlPoint Coordinate {{ point [ {} {} ] }} }} }}",
             row(0.0),
             row(1.0)
@@ -149,7 +156,8 @@ fn sweeps_along_lines_are_exact_and_others_say_why_not() {
         format!(
             "#X3D V3.3 utf8
              Shape {{ geometry NurbsSweptSurface {{
-               crossSectionCurve NurbsCurve2D {{ controlPoint [ 1 0, 1 1, 0 1 ] weight [ 1 1 2 ] knot [ 0 0 0 1 1 1 ] }}
+               crossSectionCurve NurbsCurve2D {{ controlPoint [ 1 0, 1 1, 0 1 ] weight [ 1 1 2 ] knot [ 0 0 \
+               0 1 1 1 ] }}
                trajectoryCurve NurbsCurve {{ controlPoint Coordinate {{ point [ {path} ] }} }} }} }}"
         )
     };
@@ -183,20 +191,23 @@ fn swung_surfaces_multiply_profile_and_trajectory() {
 fn prototypes_are_expanded() {
     let text = "PROTO Patch [ field SFColor color 0 1 0 exposedField MFVec3f points [ ] ] {
           Shape { appearance Appearance { material Material { diffuseColor IS color } }
-                  geometry NurbsSurface { uOrder 2 vOrder 2 uDimension 2 vDimension 2 controlPoint IS points } } }
+                  geometry NurbsSurface { uOrder 2 vOrder 2 uDimension 2 vDimension 2 controlPoint IS \
+                  points } } }
         PROTO Twice [ ] { Group { children [ Patch { points [ 0 0 0 1 0 0 0 1 0 1 1 0 ] }
-          Transform { translation 5 0 0 children Patch { color 1 0 0 points [ 0 0 0 1 0 0 0 1 0 1 1 0 ] } } ] } }
+          Transform { translation 5 0 0 children Patch { color 1 0 0 points [ 0 0 0 1 0 0 0 1 0 1 1 0 ] } } \
+          ] } }
         Twice { }";
     let model = read_bytes(format!("#VRML V2.0 utf8\n{text}").as_bytes(), "test").unwrap();
     let colors: Vec<_> = model.parts[0].faces.iter().map(|f| f.color.unwrap().0).collect();
     assert_eq!(colors, [[0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]]);
-    let xml = xml(
-        "<ProtoDeclare name='P'><ProtoInterface><field name='n' value='2'/><field name='c' type='SFNode'/></ProtoInterface>
-         <ProtoBody><NurbsPatchSurface vOrder='2' uDimension='2' vDimension='2'><IS><connect nodeField='uOrder' protoField='n'/>
-         <connect nodeField='controlPoint' protoField='c'/></IS></NurbsPatchSurface></ProtoBody></ProtoDeclare>
+    let xml = xml("<ProtoDeclare name='P'><ProtoInterface><field name='n' value='2'/><field name='c' \
+         type='SFNode'/></ProtoInterface>
+         <ProtoBody><NurbsPatchSurface vOrder='2' uDimension='2' vDimension='2'><IS><connect \
+         nodeField='uOrder' protoField='n'/>
+         <connect nodeField='controlPoint' protoField='c'/></IS></NurbsPatchSurface></ProtoBody>
+         </ProtoDeclare>
          <Shape><ProtoInstance name='P' containerField='geometry'><fieldValue name='c'>
-         <Coordinate point='0 0 0 1 0 0 0 1 0 1 1 0'/></fieldValue></ProtoInstance></Shape>",
-    );
+         <Coordinate point='0 0 0 1 0 0 0 1 0 1 1 0'/></fieldValue></ProtoInstance></Shape>");
     assert!(matches!(&xml.parts[0].faces[0].geometry, FaceGeometry::Surface(_)), "{:?}", xml.parts[0].faces);
     // One that consists of itself.
     let own = read_bytes(
@@ -213,7 +224,8 @@ fn what_is_used_twice_is_one_part() {
         "Group {{ children [ Transform {{ children DEF S Shape {{ geometry DEF G {SQUARE} }} }}
            Transform {{ translation 5 0 0 children USE S }}
            Shape {{ appearance Appearance {{ material Material {{ diffuseColor 1 0 0 }} }} geometry USE G }}
-           Shape {{ geometry USE G }} Switch {{ whichChoice 0 choice [ USE S ] }} LOD {{ level [ USE S Shape {{ }} ] }} ] }}"
+           Shape {{ geometry USE G }} Switch {{ whichChoice 0 choice [ USE S ] }} LOD {{ level [ USE S \
+           Shape {{ }} ] }} ] }}"
     ));
     assert_eq!(model.placements().len(), 6);
     assert!(model.parts.len() <= 4, "{}", model.parts.len());
@@ -221,14 +233,17 @@ fn what_is_used_twice_is_one_part() {
 
 #[test]
 fn solids_and_polygons() {
-    let model = xml(
-        "<Transform translation='0 9 0' scale='1 -1 1'><Shape><Box size='1 2 3'/></Shape><Shape><Cone side='false'/></Shape>
-         <Shape><IndexedFaceSet coordIndex='0 1 2 3 -1'><Coordinate point='0 0 0 1 0 0 1 1 0 0 1 0'/></IndexedFaceSet></Shape></Transform>
-         <Shape><IndexedTriangleFanSet ccw='false' index='0 1 2 3'><Coordinate point='0 0 0 1 0 0 1 1 0 0 1 0'/></IndexedTriangleFanSet></Shape>
-         <Shape><TriangleStripSet stripCount='4'><Coordinate point='0 0 0 1 0 0 0 1 0 1 1 0'/></TriangleStripSet></Shape>
+    let model =
+        xml("<Transform translation='0 9 0' scale='1 -1 1'><Shape><Box size='1 2 3'/></Shape><Shape><Cone \
+         side='false'/></Shape>
+         <Shape><IndexedFaceSet coordIndex='0 1 2 3 -1'><Coordinate point='0 0 0 1 0 0 1 1 0 0 1 \
+         0'/></IndexedFaceSet></Shape></Transform>
+         <Shape><IndexedTriangleFanSet ccw='false' index='0 1 2 3'><Coordinate point='0 0 0 1 0 0 1 1 0 0 1 \
+         0'/></IndexedTriangleFanSet></Shape>
+         <Shape><TriangleStripSet stripCount='4'><Coordinate point='0 0 0 1 0 0 0 1 0 1 1 \
+         0'/></TriangleStripSet></Shape>
          <Shape><ElevationGrid xDimension='2' zDimension='2' height='0 0 0 1'/></Shape>
-         <Shape><Extrusion/></Shape><Shape><Text string='\"hi\"'/></Shape><Inline url='\"other.x3d\"'/>",
-    );
+         <Shape><Extrusion/></Shape><Shape><Text string='\"hi\"'/></Shape><Inline url='\"other.x3d\"'/>");
     let items = &model.parts[0].tessellated;
     assert_eq!(items.iter().map(|i| i.triangles.len()).collect::<Vec<_>>(), [2, 2, 2, 2]);
     // Mirrored polygons still face the same way, clockwise ones the other.
@@ -256,15 +271,23 @@ fn units_of_the_file_hold() {
 #[test]
 fn files_cut_anywhere_are_read_up_to_there_or_refused() {
     let classic = format!(
-        "#X3D V3.3 utf8\nPROTO P [ inputOutput SFInt32 n 2 ] {{ {SQUARE} }}\nDEF T Transform {{ children [ Shape {{ geometry P {{ }} }}
-         Shape {{ geometry NurbsTrimmedSurface {{ uOrder 2 vOrder 2 uDimension 2 vDimension 2 uKnot [ 0 0 1 1 ]
-         controlPoint Coordinate {{ point [ 0 0 0, 1 0 0, 0 2 0, 1 2 3 ] }} trimmingContour Contour2D {{ children
-         NurbsCurve2D {{ controlPoint [ .1 .1 .9 .1 .5 .9 .1 .1 ] closed TRUE }} }} }} }} ] }} ROUTE a.b TO c.d USE T"
+        "#X3D V3.3 utf8\nPROTO P [ inputOutput SFInt32 n 2 ] {{ {SQUARE} }}\nDEF T Transform {{ children [ \
+         Shape {{ geometry P {{ }} }}
+         Shape {{ geometry NurbsTrimmedSurface {{ uOrder 2 vOrder 2 uDimension 2 vDimension 2 uKnot [ 0 0 1 \
+         1 ]
+         controlPoint Coordinate {{ point [ 0 0 0, 1 0 0, 0 2 0, 1 2 3 ] }} trimmingContour Contour2D {{ \
+         children
+         NurbsCurve2D {{ controlPoint [ .1 .1 .9 .1 .5 .9 .1 .1 ] closed TRUE }} }} }} }} ] }} ROUTE a.b TO \
+         c.d USE T"
     );
-    let xml = "<X3D version='3.3'><Scene><ProtoDeclare name='P'><ProtoInterface><field name='n' value='2'/></ProtoInterface>
-        <ProtoBody><NurbsPatchSurface uDimension='2' vDimension='2' uOrder='2' vOrder='2'><Coordinate point='0 0 0 1 0 0 0 1 0 1 1 1'/>
-        </NurbsPatchSurface></ProtoBody></ProtoDeclare><Shape DEF='S'><ProtoInstance name='P'/></Shape><Transform scale='2 2 2'>
-        <Shape USE='S'/><Shape><IndexedFaceSet coordIndex='0 1 2 -1'><Coordinate point='0 0 0 1 &amp;#48; 0 1 1 0'/></IndexedFaceSet></Shape>
+    let xml = "<X3D version='3.3'><Scene><ProtoDeclare name='P'><ProtoInterface><field name='n' \
+        value='2'/></ProtoInterface>
+        <ProtoBody><NurbsPatchSurface uDimension='2' vDimension='2' uOrder='2' vOrder='2'><Coordinate \
+        point='0 0 0 1 0 0 0 1 0 1 1 1'/>
+        </NurbsPatchSurface></ProtoBody></ProtoDeclare><Shape DEF='S'><ProtoInstance \
+        name='P'/></Shape><Transform scale='2 2 2'>
+        <Shape USE='S'/><Shape><IndexedFaceSet coordIndex='0 1 2 -1'><Coordinate point='0 0 0 1 &amp;#48; 0 \
+        1 1 0'/></IndexedFaceSet></Shape>
         </Transform></Scene></X3D>";
     for whole in [classic.as_bytes(), xml.as_bytes()] {
         for end in 0..whole.len() {

@@ -5,7 +5,7 @@ use chordal_brep::{ReadIssue, Source};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-/// Elements within elements deeper than this are left out.
+/// Elements nested deeper than this are ignored.
 const MAX_DEPTH: usize = 400;
 
 /// The graph of an XML file, as far as it can be read, and the version that it states.
@@ -235,7 +235,7 @@ impl Parser {
     }
 }
 
-/// Names and values of an element's attributes; those that are no XML are left out.
+/// Names and values of an element's attributes; malformed ones are ignored.
 fn attributes(element: &BytesStart<'_>) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for attribute in element.attributes().with_checks(false).flatten() {

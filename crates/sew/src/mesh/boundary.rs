@@ -125,7 +125,7 @@ impl Boundaries {
             side.edge.iter().for_each(|&v| at[v as usize].push(i as u32));
         }
         let mut used = vec![false; border.len()];
-        // Chains that end somewhere first, from their ends; what is left are rings.
+        // First the open chains, from their ends; the remaining ones are rings.
         let ends = (0..border.len()).filter(|&i| border[i].edge.iter().any(|&v| at[v as usize].len() != 2));
         let starts: Vec<usize> = ends.chain(0..border.len()).collect();
         for start in starts {

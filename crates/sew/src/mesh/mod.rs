@@ -3,8 +3,8 @@
 //!
 //! ```text
 //!   boundaries ([`boundary`])    border edges in chains; vertices in which chains touch are separated
-//!   closest points ([`closest`]) for every border vertex the nearest point of each border within the tolerance
-//!   tracking ([`track`])         proximities followed along both borders, without folds; vertices between two
+//!   closest points ([`closest`]) per border vertex, the nearest point of each border within the tolerance
+//!   tracking ([`track`])         proximities along both borders, without folds; vertices between two
 //!                                correspondences get theirs by length (the common reparametrisation)
 //!   sites ([`sites`])            what corresponds on all borders, however many, becomes one site
 //!   joining ([`join`])           new vertices split triangles; corresponding ones meet in their middle
@@ -13,7 +13,7 @@
 //!
 //! The paper reparametrises a common border by its whole length. Here this is done between neighbouring
 //! correspondences: differences in length do not add up, and no vertex moves by more than the tolerance. A
-//! pair that would move a vertex further is left out, and its edges stay open. In place of a grid there is a
+//! pair that would move a vertex further is rejected, and its edges stay open. In place of a grid there is a
 //! tree of boxes.
 
 mod boundary;
@@ -75,7 +75,7 @@ pub struct MeshSewReport {
     pub inserted: usize,
     /// Vertices that were merged into others.
     pub merged: usize,
-    /// Correspondences that were left out, because a vertex would have moved too far or a triangle vanished.
+    /// Correspondences that were rejected, because a vertex would have moved too far or a triangle vanished.
     pub refused: usize,
     /// Edges with a single triangle afterwards.
     pub open_after: usize,
@@ -83,7 +83,7 @@ pub struct MeshSewReport {
     pub open: Vec<OpenBorder>,
     /// The largest distance that a vertex was moved by.
     pub largest_move: f64,
-    /// Given triangles with two corners in one place, which are left out.
+    /// Given triangles with two corners in one place, which are omitted.
     pub degenerate: usize,
     /// Triangles whose normal was turned by more than a right angle.
     pub folded: usize,
@@ -134,7 +134,7 @@ pub fn sew_mesh(
     (mesh, report)
 }
 
-/// Joins what corresponds; what would move a vertex too far, or collapse a triangle, is left out from the
+/// Joins what corresponds; what would move a vertex too far, or collapse a triangle, is rejected from the
 /// start in another attempt.
 fn join_in_attempts(
     boundaries: &Boundaries,
@@ -155,8 +155,8 @@ fn join_in_attempts(
     join::join(boundaries, &sites, report.tolerance, report)
 }
 
-/// Attempts at joining. What is refused in one mostly leaves nothing to refuse in the next; the last one
-/// leaves it open.
+/// Attempts at joining. Usually the attempt after a rejection has no further rejection; the last attempt
+/// leaves rejected pairs open.
 const ATTEMPTS: usize = 4;
 
 /// A border that turns by more than this (cosine) at a vertex has a corner there.

@@ -11,7 +11,7 @@ use super::boundary::Boundaries;
 use super::closest::{Approach, Approaches, Place, along, between, vertex_place};
 use std::collections::BTreeMap;
 
-/// Two borders may differ in length between two correspondences by so many tolerances.
+/// Between two correspondences, two borders may differ in length by this many tolerances.
 const SLACK: f64 = 6.0;
 
 /// Two places that become one vertex.

@@ -1,7 +1,7 @@
 //! Whether a facet is over the tolerance because of a chord of its boundary, or because of what lies inside.
 //!
 //! A facet over a long chord of the boundary is too far off until the chord is halved, whatever is done
-//! inside. A facet beside a fine chord needs points inside. Bounds of the chord by itself tell the two apart.
+//! inside. A facet beside a fine chord needs points inside. Bounds of the chord alone distinguish the two.
 //! Where such a bound is far beyond the tolerance, the chord is examined in parts.
 
 use super::Prover;

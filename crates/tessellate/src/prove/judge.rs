@@ -26,7 +26,8 @@ use chordal_nurbs::{DVec3, Facet, FacetBound, facet_bound};
 /// Facets lower than this share of the tolerance may face any way: they can do no harm.
 const FOLD_HEIGHT: f64 = 0.05;
 
-/// Normals whose cosine is below this disagree so much that one facet cannot be said to face away from them.
+/// If the cosine between two normals is below this, they differ too much for a statement about the side of a
+/// facet.
 const NORMALS_AGREE: f64 = 0.3;
 
 /// What is wrong with a triangle.

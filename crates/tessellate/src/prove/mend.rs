@@ -93,7 +93,7 @@ impl Prover<'_> {
     }
 }
 
-/// The longest; the first one of those that only rounding tells apart, so that a part gets the same mesh at
+/// The longest; of those that differ by rounding only, the first, so that a part gets the same mesh at
 /// any place.
 pub(super) fn clearly_longest(
     of: impl Iterator<Item = usize>,

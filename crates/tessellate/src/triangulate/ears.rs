@@ -2,7 +2,7 @@
 //! clipped. It always finishes.
 //!
 //! The result is complete (every boundary segment once, every inner edge twice) and so keeps the mesh closed.
-//! What a loop encloses clockwise is covered by triangles that are turned over, as the boundary says. Holes
+//! What a loop encloses clockwise is covered by triangles that are turned over, as the boundary is. Holes
 //! are joined to the outer loop by their shortest bridge. Where two segments p–p' and q–q' of the one polygon
 //! cross, it falls apart:
 //!

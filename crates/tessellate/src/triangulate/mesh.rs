@@ -335,7 +335,8 @@ mod tests {
             let metrics = vec![unit; 200];
             for (u, v) in inner {
                 // Points on a grid hit edges and vertices exactly.
-                let p = if grid { DVec2::new((u * 8.0).round() / 8.0, (v * 8.0).round() / 8.0) } else { DVec2::new(u, v) };
+                let free = DVec2::new(u, v);
+                let p = if grid { (free * 8.0).round() / 8.0 } else { free };
                 let at = mesh.locate(p, 0);
                 mesh.insert(p, at, &metrics);
                 check(&mesh);

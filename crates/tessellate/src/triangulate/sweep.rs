@@ -47,8 +47,8 @@ struct Sweep<'a> {
 /// touch an edge or each other some may have no area.
 pub fn sweep(points: &[DVec2], loops: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, SweepError> {
     swept(points, loops).or_else(|error| {
-        // The order of vertices tells -0 from 0, the predicates do not: where a loop touches itself on such a
-        // line, that leads the sweep astray.
+        // The order of vertices distinguishes -0 and 0, the predicates do not: where a loop touches itself on
+        // such a line, that leads the sweep astray.
         let zeros_joined: Vec<DVec2> = points.iter().map(|p| *p + DVec2::ZERO).collect();
         swept(&zeros_joined, loops).map_err(|_| error)
     })
@@ -341,7 +341,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn star_polygons_with_a_hole(radii in prop::collection::vec(0.6f64..2.0, 3..60), turn in 0.0f64..6.3) {
+        fn star_polygons_with_a_hole(radii in prop::collection::vec(0.6f64..2.0, 3..60),
+            turn in 0.0f64..6.3) {
             let n = radii.len();
             let mut p: Vec<DVec2> = (0..n)
                 .map(|i| math::direction(turn + std::f64::consts::TAU * i as f64 / n as f64) * radii[i])

@@ -17,7 +17,7 @@ pub(super) struct Written {
     pub id: u32,
     pub vertices: u64,
     pub triangles: u64,
-    /// Triangles left out because two of their corners are one vertex, which 3MF forbids.
+    /// Triangles omitted because two of their corners are one vertex, which 3MF forbids.
     pub collapsed: u64,
 }
 

@@ -106,7 +106,8 @@ fn closed_splines_are_bounded_across_their_seam() {
 
 proptest! {
     #[test]
-    fn random_conics_keep_to_their_bound(a in 0.01f64..10.0, b in 0.01f64..10.0, t0 in -7.0f64..7.0, turn in 0.0f64..6.25) {
+    fn random_conics_keep_to_their_bound(a in 0.01f64..10.0, b in 0.01f64..10.0, t0 in -7.0f64..7.0,
+        turn in 0.0f64..6.25) {
         let ellipse = Curve::Ellipse { frame: fixtures::frame(), a, b };
         prop_assert!(ellipse.chord_error(t0, t0 + turn) >= sampled(&ellipse, t0, t0 + turn) - 1e-14);
         let (s0, s1) = (t0 * 0.4, t0 * 0.4 + turn * 0.5);

@@ -21,7 +21,7 @@ pub(super) fn weight_slope(setting: &Setting, rate: DVec2, error: f64) -> f64 {
 
 /// How much the image of T is stretched, sheared or turned in the facet's plane against the facet, at most:
 /// |D(S − L)| there, in two directions at right angles. Below 1 the image is a graph over the facet's plane,
-/// and its slope is that over T divided by what is left.
+/// and its slope is that over T divided by the remainder.
 pub(super) fn distortion(setting: &Setting, across: [&Modelled; 2], rate: DVec2) -> f64 {
     let [a, b] = across.map(|f| steepness(f, setting) + weight_distortion(setting, f, rate));
     math::hypot(a, b)

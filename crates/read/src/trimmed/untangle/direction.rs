@@ -1,8 +1,9 @@
 //! Outer loops and holes by the way they run, for loops that cross.
 //!
 //! Open Inventor, X3D and OpenGL keep what lies on the left of a trimming curve: outer loops run one way,
-//! holes the other. Loops that do not cross are told apart by nesting, whichever way they run. Of loops that
-//! cross, nesting says nothing; then the direction counts, if the loops that do not cross agree with it.
+//! holes the other. Loops that do not cross are classified by nesting, whatever their direction. Of loops
+//! that cross, nesting is undefined; then the direction decides, if the loops that do not cross agree with
+//! it.
 
 use super::super::chain::Chain;
 use super::super::polygon::{area, contains};
@@ -33,7 +34,7 @@ pub(super) fn roles(chains: &[Chain], scale: &Scale) -> Vec<Role> {
         let mut depth = 0;
         for j in (0..polygons.len()).filter(|&j| j != i) {
             if cross(&polygons[i], &polygons[j]) {
-                // Its nesting says nothing.
+                // Its nesting is undefined.
                 return false;
             }
             if polygons[i].iter().all(|&p| contains(&polygons[j], p)) {

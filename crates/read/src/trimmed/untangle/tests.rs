@@ -158,7 +158,8 @@ fn shapes() -> impl Strategy<Value = Vec<Shape>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
-    fn random_loops_bound_what_their_winding_numbers_say(shapes in shapes(), convention in 0..3u32, grid: bool) {
+    fn random_loops_bound_what_their_winding_numbers_say(shapes in shapes(), convention in 0..3u32,
+        grid: bool) {
         let place = |v: f64| if grid { (v * 8.0).round().clamp(1.0, 7.0) / 8.0 } else { v };
         let trims: Vec<TrimLoop> = shapes
             .iter()
