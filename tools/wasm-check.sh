@@ -74,35 +74,56 @@ fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# compare MODEL: says in one line how the two meshes compare; fails where they differ. A module has no clock, so the
-# program gets no time limit either. Nor does a module know the name of the file, which names the part where a format
-# has no names: the program reads it as `model`.
+# A module has no clock, so the program gets no time limit. Nor does a module have the name of the file, which names
+# the part in formats without names: the program reads a copy with the name `model`.
+for index in "${!models[@]}"; do
+    mkdir "$folder/$index"
+    cp -- "${models[index]}" "$folder/$index/model.${models[index]##*.}"
+done
+inputs() { for index in "${!models[@]}"; do echo "$folder/$index"/model.*; done; }
+
+# natives: meshes all models with the program, one after the other; the exit codes lie beside the meshes.
+natives() {
+    local input here code
+    while read -r input; do
+        here=$(dirname "$input")
+        code=0
+        "$CHORDAL" mesh "$input" --tolerance "${tolerance}mm" --face-timeout 0 -o "$here/native.ply" --quiet \
+            2>"$here/native.log" || code=$?
+        echo "$code" >"$here/native.code"
+    done < <(inputs)
+}
+
+# The program and the module work at the same time. The module is compiled once for all models.
+natives &
+inputs | while read -r input; do printf '%s\t%s\n' "$input" "$(dirname "$input")/wasm.ply"; done |
+    node apps/wasm/mesh.mjs "$module" - "$tolerance" >"$folder/codes" 2>"$folder/wasm.log"
+wait $!
+mapfile -t codes <"$folder/codes"
+
+# compare INDEX: states in one line how the two meshes of a model compare; fails if they differ.
 compare() {
-    local native=0 wasm=0 input="$folder/model.${1##*.}"
-    rm -f "$folder"/*
-    cp -- "$1" "$input"
-    "$CHORDAL" mesh "$input" --tolerance "${tolerance}mm" --face-timeout 0 -o "$folder/native.ply" --quiet \
-        2>"$folder/native.log" || native=$?
-    node apps/wasm/mesh.mjs "$module" "$input" "$tolerance" "$folder/wasm.ply" 2>"$folder/wasm.log" || wasm=$?
+    local here="$folder/$1" native wasm=${codes[$1]:-none}
+    native=$(cat "$here/native.code")
     if [ "$native" != "$wasm" ]; then
-        echo "exit code $native, in WebAssembly $wasm: $(tail -n 1 "$folder/wasm.log")"
+        echo "exit code $native, in WebAssembly $wasm: $(grep -F "$here/" "$folder/wasm.log" | sed 's/.*: //' || true)"
         return 1
     elif [ "$native" = 2 ]; then
         echo "no mesh by either"
-    elif cmp "$folder/native.ply" "$folder/wasm.ply" >"$folder/difference" 2>&1; then
-        echo "$(wc -c <"$folder/native.ply") equal bytes"
+    elif cmp "$here/native.ply" "$here/wasm.ply" >"$here/difference" 2>&1; then
+        echo "$(wc -c <"$here/native.ply") equal bytes"
     else
-        sed "s|$folder/||g" "$folder/difference"
+        sed "s|$here/||g" "$here/difference"
         return 1
     fi
 }
 
 wrong=0
-for model in "${models[@]}"; do
-    if line=$(compare "$model"); then
-        [ -z "$list" ] || echo "$(basename "$model"): $line"
+for index in "${!models[@]}"; do
+    if line=$(compare "$index"); then
+        [ -z "$list" ] || echo "$(basename "${models[index]}"): $line"
     else
-        echo "$(basename "$model"): $line"
+        echo "$(basename "${models[index]}"): $line"
         wrong=$((wrong + 1))
     fi
 done

@@ -14,6 +14,9 @@
 mod crease;
 mod cuts;
 mod cycle;
+mod natural;
+mod nest;
+mod strip;
 mod winding;
 
 use crate::keys::{ChartPoint, Key, Segment};
@@ -22,9 +25,7 @@ use crate::snap::{Grid, settled};
 use crate::trimmed_face::{OpenLoop, TrimmedFace};
 use chordal_brep::MeshIssue;
 use chordal_nurbs::{BoxSide, DVec2, DVec3, UvBox, work};
-use cuts::{Side, move_into_strip};
 use std::collections::BTreeMap;
-use winding::seam_beside;
 
 /// The face as polygons: outer loops counter-clockwise, holes clockwise.
 #[derive(Clone, Debug, Default)]
@@ -263,233 +264,7 @@ impl Unroll<'_, '_> {
         let rate = self.seams.metric.length(&jet, to - from);
         (rate / self.seams.chord).ceil().clamp(2.0, 256.0) as usize
     }
-
-    /// True for a face without loops, and for a surface without boundary where all loops are holes.
-    fn needs_natural_boundary(&self, plain: &[OpenLoop]) -> bool {
-        let Some(largest) =
-            plain.iter().max_by(|a, b| area(&a.points).abs().total_cmp(&area(&b.points).abs()))
-        else {
-            return true;
-        };
-        let closed = |axis: usize| {
-            self.context.surface.periods[axis].is_some()
-                || self.context.surface.poles.iter().filter(|p| p.axis == axis).count() >= 2
-        };
-        closed(0) && closed(1) && area(&largest.points) < 0.0 && !runs_along_seam(largest)
-    }
-
-    /// The whole domain of the surface.
-    fn natural_boundary(&mut self, holes: &mut Vec<OpenLoop>) -> Result<Vec<ChartPoint>, MeshIssue> {
-        let domain = self.context.surface.domain();
-        if !domain.is_finite() {
-            return Err(MeshIssue::UnboundedSurface);
-        }
-        let UvBox { mut min, mut max } = domain;
-        let mut is_free = [true; 2];
-        for axis in 0..2 {
-            if let Some(period) = self.context.surface.periods[axis] {
-                let (place, distance) = seam_beside(holes, axis, period, min[axis]);
-                min[axis] = place;
-                max[axis] = place + period;
-                is_free[axis] = distance > 0.0;
-            }
-        }
-        match is_free {
-            [true, true] => {}
-            [false, true] => {
-                if let Some(polygon) = self.cut_through_holes(0, UvBox { min, max }, holes) {
-                    return Ok(polygon);
-                }
-            }
-            [false, false] => {
-                if let Some(polygon) = self.cut_twice(holes) {
-                    return Ok(polygon);
-                }
-            }
-            [true, false] => {
-                if let Some(polygon) = self.cut_through_holes(1, UvBox { min, max }, holes) {
-                    return Ok(polygon);
-                }
-            }
-        }
-        let surface = self.context.surface;
-        let whole = UvBox { min, max };
-        let (corners, sides) = (whole.corners(), whole.sides());
-        let poles = sides.map(|side| side.is_pole(&whole, &surface.poles));
-        let keys = self.corner_keys(&corners, &poles);
-        // Opposite sides of a closed direction share their inner points.
-        let mut inner: [Vec<(Key, DVec2)>; 4] = Default::default();
-        for k in 0..4 {
-            let BoxSide { from, to, .. } = sides[k];
-            let is_seam = !poles[k] && surface.periods[sides[k].axis()].is_some();
-            let twin = (k >= 2 && is_seam).then(|| k - 2);
-            inner[k] = if poles[k] {
-                Vec::new()
-            } else if let Some(twin) = twin {
-                let by = to - sides[twin].from;
-                inner[twin].iter().rev().map(|&(key, uv)| (key, uv + by)).collect()
-            } else {
-                self.between(from, to).into_iter().map(|uv| (self.add_private(uv), uv)).collect()
-            };
-        }
-        let mut polygon = Vec::new();
-        for k in 0..4 {
-            let segment = if poles[k] { Segment::Pole } else { Segment::Seam };
-            polygon.push(ChartPoint { uv: corners[k], key: keys[k], segment });
-            polygon.extend(inner[k].iter().map(|&(key, uv)| ChartPoint { uv, key, segment }));
-        }
-        Ok(polygon)
-    }
-
-    /// The whole surface, where every straight cut across the closed direction `axis` meets a hole:
-    /// a cut through them, from pole to pole or from one side of a straight cut along that direction to the
-    /// other. `None` on surfaces that end otherwise.
-    fn cut_through_holes(
-        &mut self,
-        axis: usize,
-        domain: UvBox,
-        holes: &mut Vec<OpenLoop>,
-    ) -> Option<Vec<ChartPoint>> {
-        let across = 1 - axis;
-        let turn = along_axis(axis, domain.size()[axis]);
-        let (low, high) = (domain.min[across], domain.max[across]);
-        let surface = self.context.surface;
-        if let Some(period) = surface.periods[across] {
-            // The straight cut is a loop on both of its sides.
-            let from = domain.min;
-            let mut points = vec![ChartPoint { uv: from, key: self.pole_key(from), segment: Segment::Seam }];
-            for uv in self.between(from, from + turn) {
-                points.push(ChartPoint { uv, key: self.add_private(uv), segment: Segment::Seam });
-            }
-            let mut winding = [0, 0];
-            winding[axis] = 1;
-            let mut a = OpenLoop { points, winding, outer: true };
-            let step = along_axis(across, period);
-            move_into_strip(holes, &a, turn, step);
-            let points = shifted(&a.points, step);
-            let mut b = OpenLoop { points, ..a.clone() };
-            let first = if axis == 0 { &mut b } else { &mut a };
-            first.reverse();
-            let turn = if axis == 0 { turn } else { -turn };
-            return Some(self.between_sides([Side::Loop(&a), Side::Loop(&b)], axis, turn, holes));
-        }
-        let is_pole = |value: f64| {
-            let tiny = 1e-9 * (high - low);
-            surface.poles.iter().any(|p| p.axis == across && (p.value - value).abs() <= tiny)
-        };
-        // Along v the interior is on the other side of what runs upwards.
-        let turn = if axis == 0 { turn } else { -turn };
-        (is_pole(low) && is_pole(high))
-            .then(|| self.between_sides([Side::Pole(low), Side::Pole(high)], axis, turn, holes))
-    }
-
-    /// One key per corner of the domain; corners that poles or closed directions identify share theirs.
-    fn corner_keys(&mut self, corners: &[DVec2; 4], poles: &[bool; 4]) -> [Key; 4] {
-        let [closed_u, closed_v] = self.context.surface.periods.map(|p| p.is_some());
-        let mut group = [0usize, 1, 2, 3];
-        let mut join = |a: usize, b: usize| {
-            let (x, y) = (group[a].min(group[b]), group[a].max(group[b]));
-            group.iter_mut().for_each(|g| *g = if *g == y { x } else { *g });
-        };
-        for k in 0..4 {
-            if poles[k] {
-                join(k, (k + 1) % 4);
-            }
-        }
-        if closed_u {
-            join(0, 1);
-            join(3, 2);
-        }
-        if closed_v {
-            join(0, 3);
-            join(1, 2);
-        }
-        let mut keys = [Key::Private(0); 4];
-        for k in 0..4 {
-            keys[k] = if group[k] == k { self.pole_key(corners[k]) } else { keys[group[k]] };
-        }
-        keys
-    }
-
-    /// Orients the loops, moves holes by whole periods into the outer loop.
-    fn nest(
-        &mut self,
-        outer: Option<Vec<ChartPoint>>,
-        mut plain: Vec<OpenLoop>,
-    ) -> Result<Vec<Vec<ChartPoint>>, MeshIssue> {
-        let outer = match outer {
-            Some(mut polygon) => {
-                if area(&polygon) < 0.0 {
-                    let mut open = OpenLoop { points: polygon, ..OpenLoop::default() };
-                    open.reverse();
-                    polygon = open.points;
-                }
-                polygon
-            }
-            None => {
-                let size = |l: &OpenLoop| area(&l.points).abs();
-                let largest = (0..plain.len()).max_by(|&a, &b| size(&plain[a]).total_cmp(&size(&plain[b])));
-                let mut open = plain.remove(largest.ok_or(MeshIssue::NoArea)?);
-                if area(&open.points) < 0.0 {
-                    self.reversed = true;
-                    open.reverse();
-                }
-                open.points
-            }
-        };
-        let mut holes = Vec::with_capacity(plain.len());
-        let mut inside = Vec::with_capacity(plain.len());
-        for mut open in plain {
-            let by = self.shift_into(&outer, &open.points);
-            if self.reversed {
-                open.reverse();
-            }
-            open.points = shifted(&open.points, by.unwrap_or(DVec2::ZERO));
-            inside.push(by.is_some());
-            holes.push(open);
-        }
-        // A loop that runs as a hole in the file is a hole, also where coarse chords make it cross the outer
-        // loop: finer chords will not. A loop that runs as an outer loop is another piece of the face where
-        // it lies outside the outer loop, or inside a hole (an island).
-        let wrong: Vec<bool> = (0..holes.len())
-            .map(|i| area(&holes[i].points) > 0.0 && inside[i] && holes_around(&holes, i).is_multiple_of(2))
-            .collect();
-        holes.iter_mut().zip(wrong).filter(|(_, wrong)| *wrong).for_each(|(hole, _)| hole.reverse());
-        let mut polygons = vec![outer];
-        polygons.extend(holes.into_iter().map(|hole| hole.points));
-        Ok(polygons)
-    }
-
-    /// The whole periods that bring a loop inside the outer one, if any do.
-    fn shift_into(&self, outer: &[ChartPoint], hole: &[ChartPoint]) -> Option<DVec2> {
-        let [pu, pv] = self.context.surface.periods;
-        let (to, from) =
-            (UvBox::from_points(outer.iter().map(|p| p.uv)), UvBox::from_points(hole.iter().map(|p| p.uv)));
-        let steps = |axis: usize| match self.context.surface.periods[axis] {
-            Some(period) => {
-                // Near periods first. A cut through holes may move the outer loop by several periods.
-                let far = |d: f64| (d.abs() / period).ceil().clamp(2.0, MOST_TURNS);
-                let most = far(to.min[axis] - from.max[axis]).max(far(to.max[axis] - from.min[axis]));
-                let turns = (1..=most as i32).flat_map(|k| [f64::from(k), f64::from(-k)]);
-                std::iter::once(0.0).chain(turns).collect()
-            }
-            None => vec![0.0],
-        };
-        for v in steps(1) {
-            for u in steps(0) {
-                let by = DVec2::new(u * pu.unwrap_or(0.0), v * pv.unwrap_or(0.0));
-                let inside = hole.iter().filter(|p| contains(outer, p.uv + by)).count();
-                if 2 * inside > hole.len() {
-                    return Some(by);
-                }
-            }
-        }
-        None
-    }
 }
-
-/// The most periods by which a hole is moved to find its place in the outer loop.
-const MOST_TURNS: f64 = 64.0;
 
 /// False where a loop runs back over itself, vertex by vertex, such as two points, or an edge and the same
 /// edge back.
@@ -513,27 +288,4 @@ fn encloses_area(open: &OpenLoop, periods: [Option<f64>; 2]) -> bool {
         ends = ends.start + 1..ends.end - 1;
     }
     ends.len() > 2
-}
-
-/// The number of other loops that a loop lies inside of as a whole.
-fn holes_around(loops: &[OpenLoop], i: usize) -> usize {
-    let own = &loops[i].points;
-    let around = |other: &&OpenLoop| {
-        let extent = UvBox::from_points(other.points.iter().map(|p| p.uv));
-        own.iter().all(|p| extent.contains(p.uv)) && own.iter().all(|p| contains(&other.points, p.uv))
-    };
-    let others = loops.iter().enumerate().filter(|&(k, _)| k != i).map(|(_, other)| other);
-    others.filter(around).count()
-}
-
-/// True where a loop uses an edge twice: the face lies on both sides of it, so the loop encloses the face and
-/// no hole.
-fn runs_along_seam(open: &OpenLoop) -> bool {
-    let first = |p: &ChartPoint| match p.segment {
-        Segment::Edge { edge, chord: 0 } => Some(edge),
-        _ => None,
-    };
-    let mut edges: Vec<u32> = open.points.iter().filter_map(first).collect();
-    edges.sort_unstable();
-    edges.windows(2).any(|pair| pair[0] == pair[1])
 }

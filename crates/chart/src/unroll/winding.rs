@@ -3,7 +3,8 @@
 //!
 //! Holes that the cut leads through become sides of the polygon and are taken out of the list of holes.
 
-use super::cuts::{Bridge, BridgeEnd, Cuts, Side, move_into_strip, nearest_period};
+use super::cuts::{Bridge, BridgeEnd, Cuts, Side, nearest_period};
+use super::strip::move_into_strip;
 use super::{Unroll, along_axis, mean, shifted};
 use crate::keys::{ChartPoint, Key, Segment};
 use crate::trimmed_face::OpenLoop;
