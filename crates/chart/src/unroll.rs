@@ -24,7 +24,7 @@ use crate::seams::Seams;
 use crate::snap::{Grid, settled};
 use crate::trimmed_face::{OpenLoop, TrimmedFace};
 use chordal_brep::MeshIssue;
-use chordal_nurbs::{BoxSide, DVec2, DVec3, UvBox, work};
+use chordal_nurbs::{DVec2, DVec3, UvBox, work};
 use std::collections::BTreeMap;
 
 /// The face as polygons: outer loops counter-clockwise, holes clockwise.
