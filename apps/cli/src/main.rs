@@ -39,7 +39,7 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
     guard::record_panics();
-    let exit = guard::guarded(run).unwrap_or_else(|sentence| {
+    let exit = process::with_deep_stack(|| guard::guarded(run)).flatten().unwrap_or_else(|sentence| {
         say(&sentence);
         Exit::Nothing
     });

@@ -1,7 +1,21 @@
 //! What the operating system gives the program: threads, memory.
 
-/// Deep models recurse deeply, in readers above all.
+/// The stack of every thread, in bytes. Readers follow nested entities by recursion, to depths that they limit.
+/// The main thread of Windows has 1 MiB, which is too small for these limits.
 const STACK: usize = 16 << 20;
+
+/// Runs `work` in a thread with a stack that is deep enough for every reader.
+///
+/// # Errors
+/// One sentence if the system refuses the thread.
+pub fn with_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, String> {
+    let failed = |e: std::io::Error| format!("cannot start a thread: {e}");
+    std::thread::scope(|scope| {
+        let thread =
+            std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).map_err(failed)?;
+        thread.join().map_err(|_| "internal error: the main thread stopped".into())
+    })
+}
 
 /// A pool of `threads` threads, or of one per core.
 ///

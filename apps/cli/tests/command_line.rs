@@ -41,6 +41,28 @@ fn options_without_effect_are_refused() {
     assert_eq!(files_in(folder.path()), Vec::<String>::new());
 }
 
+/// The unit and the axis change the bytes of a file of any format.
+#[test]
+fn options_of_the_output_change_every_format() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for extension in ["stl", "ply", "obj", "glb", "gltf", "3mf"] {
+        let other_axis = if extension.starts_with("gl") { "--up z" } else { "--up y" };
+        let mesh = |options: &str| {
+            let made = folder.path().join(format!("out.{extension}"));
+            let line = format!("mesh {{}} -o {{}} -q --tolerance 1% {options}");
+            run(&line, &[&model("blade"), &made]).exits(&[0]);
+            let mut files = files_in(folder.path());
+            files.sort();
+            files.iter().flat_map(|file| fs::read(file).expect("a file")).collect::<Vec<u8>>()
+        };
+        let plain = mesh("");
+        assert!(plain == mesh(""), "{extension}");
+        for options in ["--unit in", other_axis] {
+            assert!(plain != mesh(options), "{options} has no effect on {extension}");
+        }
+    }
+}
+
 #[test]
 fn a_model_given_to_be_checked_gets_a_hint() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -40,6 +40,34 @@ fn unknown_strategies_are_refused_by_name() {
     assert!(!out.exists());
 }
 
+/// An option of the accuracy changes the mesh of a strategy or edge method, or is refused by its name.
+#[test]
+fn options_have_an_effect_on_every_method_or_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.ply");
+    let strategies = chordal::methods::strategies().iter().map(|entry| ("--strategy", entry.name));
+    let edge_methods = chordal::methods::edge_methods().iter().map(|entry| ("--edge-method", entry.name));
+    for (kind, method) in strategies.chain(edge_methods) {
+        for bound in ["proven", "estimated"] {
+            let mesh = |options: &str| {
+                let line = format!(
+                    "mesh {{}} -o {{}} -q --tolerance 0.5% {kind} {method} --bound {bound} {options}"
+                );
+                let ran = run(&line, &[&model("fillet_bspline"), &out]).exits(&[0, 2]);
+                if ran.code == 0 { Ok(std::fs::read(&out).expect("a mesh")) } else { Err(ran.stderr) }
+            };
+            let plain = mesh("").expect("a mesh");
+            for option in ["--angle 3deg", "--max-edge 3mm", "--boundary-tolerance 0.01%"] {
+                let name = option.split(' ').next().unwrap_or_default();
+                match mesh(option) {
+                    Ok(bytes) => assert!(bytes != plain, "{option} has no effect: {method}, {bound}"),
+                    Err(sentence) => assert!(sentence.contains(name), "{method}, {bound}: {sentence}"),
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn every_meshed_face_is_drawn() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,16 +1,13 @@
-//! The nearest triangle to a point: a tree of boxes over triangles, split at the median of their centres.
+//! The nearest triangle to a point, by a tree of boxes.
 
+use chordal_nurbs::{Box3, BoxTree};
 use glam::DVec3;
 
-/// Triangles a leaf holds.
-const LEAF: usize = 4;
-
-/// Triangles prepared for many questions.
+/// Triangles prepared for many searches.
 #[derive(Debug)]
 pub struct TriangleTree {
-    /// In the order of the leaves, each with its place in the list that the tree was built from.
-    triangles: Vec<([DVec3; 3], u32)>,
-    nodes: Vec<Node>,
+    triangles: Vec<[DVec3; 3]>,
+    boxes: BoxTree,
 }
 
 /// The triangle of a tree that is nearest to a point.
@@ -20,100 +17,37 @@ pub struct Nearest {
     pub distance: f64,
     /// Its corners.
     pub triangle: [DVec3; 3],
-    /// Its place in the list that the tree was built from.
+    /// Its index in the list that the tree was built from.
     pub index: usize,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    min: DVec3,
-    max: DVec3,
-    /// Of the triangles below.
-    first: u32,
-    count: u32,
-    /// The second child; the first follows its parent. 0: a leaf.
-    second: u32,
 }
 
 impl TriangleTree {
     /// Builds the tree.
     pub fn new(triangles: Vec<[DVec3; 3]>) -> Self {
-        let mut triangles: Vec<([DVec3; 3], u32)> = triangles.into_iter().zip(0..).collect();
-        let mut nodes = Vec::with_capacity(triangles.len());
-        if !triangles.is_empty() {
-            build(&mut triangles, 0, &mut nodes);
-        }
-        Self { triangles, nodes }
+        let bounds = |triangle: &[DVec3; 3]| triangle.iter().fold(Box3::EMPTY, |all, &p| all.including(p));
+        Self { boxes: BoxTree::new(triangles.iter().map(bounds)), triangles }
     }
 
-    /// The distance to the nearest triangle, or `limit` where none is nearer.
+    /// The distance to the nearest triangle, or `limit` if no triangle is nearer.
     pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
-        self.search(p, limit).0
+        self.search(p, limit).map_or(limit, |(_, distance)| distance)
     }
 
-    /// The nearest triangle; `None` where there is none.
+    /// The nearest triangle, of several the one with the lowest index; `None` for an empty tree.
     pub fn nearest(&self, p: DVec3) -> Option<Nearest> {
-        let (distance, place) = self.search(p, f64::INFINITY);
-        let (triangle, index) = self.triangles[place?];
-        Some(Nearest { distance, triangle, index: index as usize })
+        let (index, distance) = self.search(p, f64::INFINITY)?;
+        Some(Nearest { distance, triangle: self.triangles[index], index })
     }
 
-    /// The closest point of one triangle, as [`TriangleTree::nearest`] names it.
+    /// The closest point of one triangle, as [`TriangleTree::nearest`] finds it.
     pub fn closest_point(p: DVec3, triangle: [DVec3; 3]) -> DVec3 {
         closest_point(p, triangle)
     }
 
-    fn search(&self, p: DVec3, limit: f64) -> (f64, Option<usize>) {
-        let mut best = limit * limit;
-        let mut found = None;
-        let mut stack: Vec<u32> = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
-        while let Some(index) = stack.pop() {
-            let node = &self.nodes[index as usize];
-            if box_distance_squared(p, node) >= best {
-                continue;
-            }
-            if node.second == 0 {
-                let range = node.first as usize..(node.first + node.count) as usize;
-                for index in range {
-                    let distance = closest_point(p, self.triangles[index].0).distance_squared(p);
-                    if distance < best {
-                        (best, found) = (distance, Some(index));
-                    }
-                }
-                continue;
-            }
-            // The nearer child is looked at first: it is pushed last.
-            let (a, b) = (index + 1, node.second);
-            let nearer_a = box_distance_squared(p, &self.nodes[a as usize])
-                <= box_distance_squared(p, &self.nodes[b as usize]);
-            stack.extend(if nearer_a { [b, a] } else { [a, b] });
-        }
-        (best.sqrt(), found)
+    fn search(&self, p: DVec3, limit: f64) -> Option<(usize, f64)> {
+        let distance = |index: u32| Some(closest_point(p, self.triangles[index as usize]).distance(p));
+        self.boxes.nearest(p, limit, distance).map(|(index, distance)| (index as usize, distance))
     }
-}
-
-fn build(triangles: &mut [([DVec3; 3], u32)], first: usize, nodes: &mut Vec<Node>) {
-    let corners = || triangles.iter().flat_map(|t| t.0);
-    let min = corners().fold(DVec3::INFINITY, |m, p| m.min(p));
-    let max = corners().fold(DVec3::NEG_INFINITY, |m, p| m.max(p));
-    let index = nodes.len();
-    nodes.push(Node { min, max, first: first as u32, count: triangles.len() as u32, second: 0 });
-    if triangles.len() <= LEAF {
-        return;
-    }
-    let size = max - min;
-    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).expect("three axes");
-    let center = |t: &([DVec3; 3], u32)| t.0[0][axis] + t.0[1][axis] + t.0[2][axis];
-    let middle = triangles.len() / 2;
-    triangles.select_nth_unstable_by(middle, |a, b| center(a).total_cmp(&center(b)));
-    let (low, high) = triangles.split_at_mut(middle);
-    build(low, first, nodes);
-    nodes[index].second = nodes.len() as u32;
-    build(high, first + middle, nodes);
-}
-
-fn box_distance_squared(p: DVec3, node: &Node) -> f64 {
-    p.clamp(node.min, node.max).distance_squared(p)
 }
 
 /// The point of a triangle closest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).

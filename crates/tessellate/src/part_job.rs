@@ -113,7 +113,9 @@ impl<'a> PartJob<'a> {
     /// # Errors
     /// Where the reader made none: the reader's reason.
     pub fn surface(&self, face: usize) -> Result<&FaceSurface<'a>, MeshIssue> {
-        self.surfaces[face].as_ref().map_err(|issue| MeshIssue::NotRead { issue: Box::new((*issue).clone()) })
+        self.surfaces[face]
+            .as_ref()
+            .map_err(|issue| MeshIssue::SurfaceNotRead { issue: Box::new((*issue).clone()) })
     }
 }
 

@@ -12,7 +12,7 @@ use std::fmt;
 #[non_exhaustive]
 pub enum MeshIssue {
     /// The reader made no surface for the face; the issue has the code of the reader's.
-    NotRead {
+    SurfaceNotRead {
         /// Why the face has no surface.
         issue: Box<Issue>,
     },
@@ -136,7 +136,7 @@ impl MeshIssue {
     /// A stable name for programs to match.
     pub fn code(&self) -> &'static str {
         match self {
-            MeshIssue::NotRead { issue } => issue.kind.code(),
+            MeshIssue::SurfaceNotRead { issue } => issue.kind.code(),
             MeshIssue::Cancelled => "cancelled",
             MeshIssue::OutOfTime { .. } => "out-of-time",
             MeshIssue::TooManyTriangles { .. } => "too-many-triangles",
@@ -171,7 +171,7 @@ impl MeshIssue {
 impl fmt::Display for MeshIssue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            MeshIssue::NotRead { issue } => issue.fmt(f),
+            MeshIssue::SurfaceNotRead { issue } => issue.fmt(f),
             MeshIssue::Cancelled => f.write_str("cancelled"),
             MeshIssue::OutOfTime { elements } => {
                 write!(f, "time limit of the face reached at {}", count(*elements, "triangle", "triangles"))
