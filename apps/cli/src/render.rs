@@ -26,7 +26,8 @@ mod drawing {
     use crate::whole_file::write_whole;
     use chordal::brep::issue::words::{count, number};
     use chordal::gpu::{
-        Background, DeviceChoice, Normals, Projection, RenderOptions, SectionPlane, Style, Trim, View,
+        Background, DeviceChoice, Normals, OptionError, Projection, RenderOptions, SectionPlane, Style, Trim,
+        View,
     };
     use chordal::nurbs::DVec3;
     use chordal::{Image, ImageRenderer, MeshOptions, Mesher, ReadOptions, RenderMode, Report};
@@ -97,10 +98,11 @@ mod drawing {
 
     fn picture(args: &RenderArgs) -> Result<RenderOptions, String> {
         check(args)?;
-        let of = |option: &str, reason: String| format!("--{option}: {reason}");
-        let view: View = args.camera.parse().map_err(|e| of("camera", e))?;
-        let background: Background = args.background.parse().map_err(|e| of("background", e))?;
-        let section = args.section.as_deref().map(section).transpose().map_err(|e| of("section", e))?;
+        let of = |option: &str, reason: &dyn std::fmt::Display| format!("--{option}: {reason}");
+        let view: View = args.camera.parse().map_err(|e: OptionError| of("camera", &e))?;
+        let background: Background =
+            args.background.parse().map_err(|e: OptionError| of("background", &e))?;
+        let section = args.section.as_deref().map(section).transpose().map_err(|e| of("section", &e))?;
         let [width, height] = args.size.0;
         Ok(RenderOptions::default()
             .with_size(width, height)

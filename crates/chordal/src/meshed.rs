@@ -167,6 +167,11 @@ impl Meshed {
     /// Writes the mesh in the format of the extension: stl, ply, obj, glb, gltf or 3mf. The file is replaced
     /// only once the new one is complete.
     ///
+    /// Binary STL and GLB have 32-bit coordinates. [`MeshOptions::with_output_format`] makes the mesh keep the
+    /// tolerance after this rounding, too.
+    ///
+    /// [`MeshOptions::with_output_format`]: crate::MeshOptions::with_output_format
+    ///
     /// # Errors
     /// [`Error::Request`] where the extension is unknown or the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<WriteSummary, Error> {
@@ -202,7 +207,7 @@ impl Meshed {
         to_bytes(&self.scene_for(options.format), &options).map_err(|source| failed(Path::new(""), source))
     }
 
-    /// Writers warn where rounding eats much of the tolerance.
+    /// Writers warn if rounding takes a large part of the tolerance.
     fn with_tolerance(&self, options: &WriteOptions) -> WriteOptions {
         let tolerance = options.tolerance_mm.unwrap_or(self.resolved.tolerance);
         options.with_tolerance_mm(tolerance)

@@ -28,10 +28,41 @@ impl fmt::Display for Tolerance {
     }
 }
 
-/// A quantity that cannot be read; the message is one sentence.
+/// Why a quantity cannot be read; the message is one sentence.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct QuantityError(String);
+#[non_exhaustive]
+pub enum QuantityError {
+    /// The text does not begin with a number.
+    #[error("`{text}` does not begin with a number")]
+    NoNumber {
+        /// The text.
+        text: String,
+    },
+    /// The number is zero, negative or infinite.
+    #[error("`{text}` is not greater than zero")]
+    NotPositive {
+        /// The text.
+        text: String,
+    },
+    /// The unit is no unit of length.
+    #[error("`{unit}` is no unit of length (use mm, um, cm, m, in or ft)")]
+    UnknownLengthUnit {
+        /// The unit.
+        unit: String,
+    },
+    /// The unit is no unit of angle.
+    #[error("`{unit}` is no unit of angle (use deg or rad, or the word off)")]
+    UnknownAngleUnit {
+        /// The unit.
+        unit: String,
+    },
+    /// The text is neither a percentage nor a length.
+    #[error("`{text}` is neither a percentage nor a length")]
+    NoTolerance {
+        /// The text.
+        text: String,
+    },
+}
 
 const LENGTH_UNITS: [(&str, f64); 11] = [
     ("nm", 1e-6),
@@ -55,9 +86,11 @@ pub fn parse_length(text: &str) -> Result<f64, QuantityError> {
     let (number, unit) = split(text)?;
     let factor = match unit {
         "" => 1.0,
-        _ => LENGTH_UNITS.iter().find(|(name, _)| *name == unit).map(|&(_, factor)| factor).ok_or_else(
-            || QuantityError(format!("`{unit}` is no unit of length (use mm, um, cm, m, in or ft)")),
-        )?,
+        _ => LENGTH_UNITS
+            .iter()
+            .find(|(name, _)| *name == unit)
+            .map(|&(_, factor)| factor)
+            .ok_or_else(|| QuantityError::UnknownLengthUnit { unit: unit.to_owned() })?,
     };
     positive(number * factor, text)
 }
@@ -77,11 +110,7 @@ pub fn parse_angle(text: &str) -> Result<Option<f64>, QuantityError> {
     let radians = match unit {
         "" | "deg" | "°" => number.to_radians(),
         "rad" => number,
-        _ => {
-            return Err(QuantityError(format!(
-                "`{unit}` is no unit of angle (use deg or rad, or the word off)"
-            )));
-        }
+        _ => return Err(QuantityError::UnknownAngleUnit { unit: unit.to_owned() }),
     };
     let radians = positive(radians, text)?;
     Ok((radians < std::f64::consts::PI).then_some(radians))
@@ -95,7 +124,7 @@ impl FromStr for Tolerance {
             Some(number) => {
                 let (number, rest) = split(number)?;
                 if !rest.is_empty() {
-                    return Err(QuantityError(format!("`{text}` is neither a percentage nor a length")));
+                    return Err(QuantityError::NoTolerance { text: text.to_owned() });
                 }
                 positive(number, text).map(Tolerance::Percent)
             }
@@ -118,8 +147,7 @@ fn split(text: &str) -> Result<(f64, &str), QuantityError> {
     let end = (0..bytes.len())
         .find(|&i| !(matches!(bytes[i], b'0'..=b'9' | b'.') || exponent(i) || sign(i)))
         .unwrap_or(bytes.len());
-    let number =
-        text[..end].parse().map_err(|_| QuantityError(format!("`{text}` does not begin with a number")))?;
+    let number = text[..end].parse().map_err(|_| QuantityError::NoNumber { text: text.to_owned() })?;
     Ok((number, text[end..].trim()))
 }
 
@@ -127,7 +155,7 @@ fn positive(value: f64, text: &str) -> Result<f64, QuantityError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        Err(QuantityError(format!("`{}` is not greater than zero", text.trim())))
+        Err(QuantityError::NotPositive { text: text.trim().to_owned() })
     }
 }
 
@@ -169,5 +197,15 @@ mod tests {
         assert!("1mm%".parse::<Tolerance>().is_err());
         assert!("0%".parse::<Tolerance>().is_err());
         assert!("%".parse::<Tolerance>().is_err());
+    }
+
+    #[test]
+    fn errors_can_be_matched() {
+        let error = |text: &str| text.parse::<Tolerance>().expect_err(text);
+        assert!(matches!(error("wide"), QuantityError::NoNumber { .. }));
+        assert!(matches!(error("-1mm"), QuantityError::NotPositive { .. }));
+        assert!(matches!(error("1 parsec"), QuantityError::UnknownLengthUnit { unit } if unit == "parsec"));
+        assert!(matches!(error("1mm%"), QuantityError::NoTolerance { .. }));
+        assert!(matches!(parse_angle("1grad"), Err(QuantityError::UnknownAngleUnit { .. })));
     }
 }

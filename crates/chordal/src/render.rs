@@ -8,6 +8,7 @@ use chordal_gpu::{
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RenderMode {
     /// The triangles of the mesh.
     #[default]
@@ -18,6 +19,7 @@ pub enum RenderMode {
 
 /// How much was evaluated for an exact picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Evaluated {
     /// Points evaluated on the device.
     pub points: usize,
@@ -29,6 +31,7 @@ pub struct Evaluated {
 
 /// A picture.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Image {
     /// The bytes of a PNG file.
     pub png: Vec<u8>,

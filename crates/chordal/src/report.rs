@@ -317,6 +317,7 @@ pub struct Seconds {
 /// What became of a face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum FaceStatus {
     /// It has triangles.
     #[default]

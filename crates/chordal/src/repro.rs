@@ -225,14 +225,18 @@ impl std::fmt::Display for FaceName {
 
 /// `#123` or `123`: the number of an entity; `@5`: the place in `faces_detail` of the report.
 impl std::str::FromStr for FaceName {
-    type Err = String;
+    type Err = FaceNameError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong =
-            || "a face is named #123 (the number of its entity) or @5 (its place in faces_detail)".to_owned();
-        match text.strip_prefix('@') {
-            Some(index) => index.parse().map(FaceName::Index).map_err(|_| wrong()),
-            None => text.trim_start_matches('#').parse().map(FaceName::Entity).map_err(|_| wrong()),
-        }
+    fn from_str(text: &str) -> Result<Self, FaceNameError> {
+        let parsed = match text.strip_prefix('@') {
+            Some(index) => index.parse().map(FaceName::Index),
+            None => text.trim_start_matches('#').parse().map(FaceName::Entity),
+        };
+        parsed.map_err(|_| FaceNameError)
     }
 }
+
+/// A text that names no face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a face is named #123 (the number of its entity) or @5 (its place in faces_detail)")]
+pub struct FaceNameError;

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 /// Whether edges that one face alone uses are sewn to their neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Sewing {
     /// [`Sewing::Auto`] for parts without an edge that two faces share; other parts stay as they are.
     #[default]

@@ -241,3 +241,18 @@ fn wild_bounds_leave_rounds_enough() {
         }
     }
 }
+
+/// Everything that a program passes between its threads can be passed, and printed for debugging.
+#[test]
+fn types_of_the_facade_can_be_shared_between_threads() {
+    fn shared<T: Send + Sync + std::fmt::Debug + 'static>() {}
+    fn shared_and_cloned<T: Send + Sync + Clone + std::fmt::Debug + 'static>() {}
+    shared_and_cloned::<Model>();
+    shared_and_cloned::<MeshOptions>();
+    shared_and_cloned::<Mesher>();
+    shared_and_cloned::<Meshed>();
+    shared_and_cloned::<Report>();
+    shared_and_cloned::<Cancel>();
+    shared_and_cloned::<chordal::QuantityError>();
+    shared::<Error>();
+}

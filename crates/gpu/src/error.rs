@@ -95,6 +95,21 @@ pub enum GpuError {
     PixelFormat,
 }
 
+/// Why an option of a picture cannot be read from text; each message is one sentence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OptionError {
+    /// The text is neither the name of a view nor six numbers.
+    #[error("neither iso, top, bottom, front, back, left or right nor six numbers eye,target (x,y,z,x,y,z)")]
+    View,
+    /// The eye and the target are the same point.
+    #[error("the eye is at the target")]
+    EyeAtTarget,
+    /// The text is no colour.
+    #[error("neither light, dark, transparent nor #rrggbb")]
+    Background,
+}
+
 /// What kernels need of an adapter. Numbers are what the adapter has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

@@ -26,7 +26,7 @@ pub use draw::{
     Projection, RenderOptions, Renderer, Scenery, SectionPlane, Shape, Style, Trim, Vertex, View,
     mesh_scenery, scene_outline,
 };
-pub use error::{Capability, GpuError, Resource, Task, Unsuitable};
+pub use error::{Capability, GpuError, OptionError, Resource, Task, Unsuitable};
 pub use evaluate::{Evaluated, Evaluation, KernelRunner, OnDevice, Search, Variant, Wanted, evaluate_twin};
 pub use faces::{TrimmedFace, TrimmedModel, TrimmedPart, trimmed_model};
 pub use real::Real;

@@ -94,6 +94,7 @@ impl fmt::Display for Format {
 
 /// A unit of length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Unit {
     /// `um`, 0.001 mm.
     Micrometre,

@@ -1,5 +1,6 @@
 //! The camera: where the eye is, and what fits into the picture.
 
+use crate::error::OptionError;
 use chordal_nurbs::math;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 use std::str::FromStr;
@@ -48,10 +49,10 @@ const NAMED: [(&str, [f64; 3], [f64; 3]); 7] = [
 ];
 
 impl FromStr for View {
-    type Err = String;
+    type Err = OptionError;
 
     /// A name, or `eye,target`: six numbers, millimetres.
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, OptionError> {
         if let Some((_, direction, up)) = NAMED.iter().find(|(name, ..)| *name == text) {
             return Ok(Self::From { direction: DVec3::from(*direction), up: DVec3::from(*up) });
         }
@@ -60,13 +61,11 @@ impl FromStr for View {
             Ok(&[a, b, c, d, e, f]) if [a, b, c, d, e, f].iter().all(|x| x.is_finite()) => {
                 let (eye, target) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
                 if eye == target {
-                    return Err("the eye is at the target".into());
+                    return Err(OptionError::EyeAtTarget);
                 }
                 Ok(Self::At { eye, target })
             }
-            _ => Err("neither iso, top, bottom, front, back, left or right nor six numbers eye,target \
-                (x,y,z,x,y,z)"
-                .into()),
+            _ => Err(OptionError::View),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::camera::{Camera, Projection, View};
 use super::srgb::linear;
+use crate::error::OptionError;
 use glam::DVec3;
 
 /// How a model is drawn.
@@ -45,10 +46,10 @@ impl Background {
 }
 
 impl std::str::FromStr for Background {
-    type Err = String;
+    type Err = OptionError;
 
     /// `light`, `dark`, `transparent` or `#rrggbb`.
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, OptionError> {
         match text {
             "light" => return Ok(Self::LIGHT),
             "dark" => return Ok(Self::DARK),
@@ -57,7 +58,7 @@ impl std::str::FromStr for Background {
         }
         let hex =
             text.strip_prefix('#').filter(|h| h.len() == 6).and_then(|h| u32::from_str_radix(h, 16).ok());
-        let Some(hex) = hex else { return Err("neither light, dark, transparent nor #rrggbb".into()) };
+        let Some(hex) = hex else { return Err(OptionError::Background) };
         Ok(Self::Color([16, 8, 0].map(|shift| linear((hex >> shift & 255) as f64 / 255.0))))
     }
 }
