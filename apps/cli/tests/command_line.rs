@@ -51,9 +51,11 @@ fn options_of_the_output_change_every_format() {
             let made = folder.path().join(format!("out.{extension}"));
             let line = format!("mesh {{}} -o {{}} -q --tolerance 1% {options}");
             run(&line, &[&model("blade"), &made]).exits(&[0]);
-            let mut files = files_in(folder.path());
-            files.sort();
-            files.iter().flat_map(|file| fs::read(file).expect("a file")).collect::<Vec<u8>>()
+            let files = files_in(folder.path());
+            files
+                .iter()
+                .flat_map(|name| fs::read(folder.path().join(name)).expect("a file"))
+                .collect::<Vec<u8>>()
         };
         let plain = mesh("");
         assert!(plain == mesh(""), "{extension}");
