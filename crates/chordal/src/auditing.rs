@@ -54,17 +54,24 @@ pub(crate) fn audit_parts(
             if part_use.instances == 0 {
                 AuditedPart::default()
             } else {
-                let asked = AuditOptions::new(options.largest_tolerance())
-                    .with_angle(options.angle)
+                let requested = AuditOptions::new(options.largest_tolerance())
+                    .with_angle(limit_of_facets(options))
                     .with_proven(options.bound == Bound::Proven)
                     .with_millimetres(part_use.scale)
                     .with_self_intersections(self_intersections);
-                let audit = audited(part, meshed, &asked);
-                let audit = parted(part, meshed, audit, options, &asked, cancel);
+                let audit = audited(part, meshed, &requested);
+                let audit = parted(part, meshed, audit, options, &requested, cancel);
                 account_of(part, meshed, audit, options)
             }
         })
         .collect()
+}
+
+/// The largest angle along a mesh edge that facets must keep. Without a proof, the facets of a fill method of
+/// another crate are those of its own estimate, which does not limit the angle.
+fn limit_of_facets(options: &Options) -> Option<f64> {
+    let is_estimated = options.bound == Bound::Estimated && options.fill_method.is_some();
+    options.angle.filter(|_| !is_estimated)
 }
 
 /// The findings of the audit about a meshed part, and the claims of the mesher. Where loops were untangled,
