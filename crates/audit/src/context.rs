@@ -37,6 +37,13 @@ impl Context<'_> {
         (AIM * tolerance, claimed)
     }
 
+    /// What a simple bound has to confirm: the claimed error of the face, or the tolerance where there is none.
+    pub fn to_confirm(&self, face: usize) -> f64 {
+        let tolerance = self.options.tolerance;
+        let claimed = self.claim(face).map(|c| c.proven_error).filter(|e| e.is_finite());
+        claimed.map_or(AIM * tolerance, |claimed| claimed.min(tolerance))
+    }
+
     pub fn claim(&self, face: usize) -> Option<Claim> {
         self.claims.and_then(|claims| claims.get(face)).copied()
     }

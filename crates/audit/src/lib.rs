@@ -39,6 +39,7 @@ mod second_bound;
 mod self_intersections;
 mod separation;
 mod shell;
+mod simple_bound;
 mod triangle_pair;
 mod triangle_tree;
 mod unrolled;

@@ -8,9 +8,13 @@ use crate::cuts::{self, Cut};
 use crate::fan::{Fan, Side, fan_bound};
 use crate::findings::{FaceFindings, Log};
 use crate::precision::{AIM, CHUNK};
+use crate::simple_bound::{SimpleBound, SimpleScratch};
 use chordal_brep::AuditIssue;
 use chordal_nurbs::{Facet, Piece, Surface, SurfaceBounds, facet_bound};
 use rayon::prelude::*;
+
+/// Two formulas for the same bound differ by less than this share of it.
+const SAME: f64 = 1e-9;
 
 /// Of each triangle the sides, as the bounds see them; of a plane none.
 pub(crate) fn sides(chart: &Chart<'_>, at: &Boundary) -> Vec<[Side; 3]> {
@@ -89,8 +93,10 @@ fn facets_error(
         return FacetsError::default();
     }
     let (enough, claimed) = context.enough(face);
+    let simple = SimpleBound::quick(chart.surface);
+    let confirmed = context.to_confirm(face);
     let judge = |(triangles, sides): (&[[u32; 3]], &[[Side; 3]])| {
-        let mut scratch = Vec::new();
+        let (mut scratch, mut of_simple) = (Vec::new(), SimpleScratch::default());
         let mut worst = FacetsError::default();
         for (t, &s) in triangles.iter().zip(sides) {
             let (t, s) = if chart.turned { ([t[0], t[2], t[1]], [s[0], s[2], s[1]]) } else { (*t, s) };
@@ -100,6 +106,12 @@ fn facets_error(
             if let Some(i) = chart.fan_corner(&t) {
                 let error = sector(chart, bounds, &t, &facet, s, i, enough, &mut scratch);
                 worst.error = worst.error.max(error);
+                continue;
+            }
+            let confirms = |&error: &f64| error <= confirmed * (1.0 + SAME);
+            let error = simple.as_ref().and_then(|s| s.of(chart, &facet, confirmed, &mut of_simple));
+            if let Some(error) = error.filter(confirms) {
+                worst.plain = worst.plain.max(error.min(confirmed));
                 continue;
             }
             let mut plain = facet_bound(bounds, &facet, enough, &mut scratch).error;

@@ -30,9 +30,10 @@ use crate::chart::Chart;
 use crate::context::Context;
 use crate::fan::Side;
 use crate::findings::{FaceFindings, Log};
+use crate::simple_bound::{SimpleBound, SimpleScratch};
 use crate::triangle_tree::{TriangleTree, closest_point};
 use chordal_brep::AuditIssue;
-use chordal_nurbs::{DVec2, DVec3, Surface, UvBox};
+use chordal_nurbs::{DVec2, DVec3, Facet, Surface, UvBox};
 use rayon::prelude::*;
 
 /// One facet in this many is bounded again.
@@ -84,7 +85,8 @@ pub(crate) fn check_second_bound(
     }
     let limit = error + (NEGLIGIBLE * context.options.tolerance).max(4.0 * chart.rounding);
     let enough = limit.max(ENOUGH * context.options.tolerance) * (1.0 + SLACK);
-    let second = SecondBound { chart, sides, limit, enough };
+    let simple = Some(SimpleBound::new(chart.surface));
+    let second = SecondBound { chart, sides, simple, limit, enough };
     if let Some(measured) = second.refuted(&picked(chart, log.index.is_multiple_of(LARGEST_OF))) {
         log.add(AuditIssue::BoundExceeded { proven: context.mm(limit), measured: context.mm(measured) });
     }
@@ -123,6 +125,8 @@ struct Verdict {
 struct SecondBound<'a, 'b> {
     chart: &'a Chart<'b>,
     sides: &'a [[Side; 3]],
+    /// What it confirms is not divided.
+    simple: Option<SimpleBound<'a>>,
     /// No point may be farther off.
     limit: f64,
     /// What is to be confirmed.
@@ -155,6 +159,14 @@ impl SecondBound<'_, '_> {
         let uv = t.map(|c| self.chart.mesh.corners[c as usize].uv);
         let xyz = t.map(|c| self.chart.xyz[c as usize]);
         let Some(target) = Target::new(xyz, self.sides[triangle]) else { return Verdict::default() };
+        let facet = Facet { uv, xyz, sag: self.sides[triangle].map(Side::sag) };
+        let simple = self
+            .simple
+            .as_ref()
+            .and_then(|simple| simple.of(self.chart, &facet, self.limit, &mut SimpleScratch::default()));
+        if simple.is_some_and(|error| error <= self.limit) {
+            return Verdict { is_confirmed: true, beyond: Vec::new() };
+        }
         let bend = if is_bounded { self.bend(uv) } else { None };
         let whole = Piece { uv, xyz, off: [0.0; 3], bend, level: 0 };
         let mut search = Search { second: self, target, beyond: Vec::new(), pieces: 0 };

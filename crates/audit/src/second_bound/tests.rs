@@ -89,7 +89,7 @@ fn outcome(chart: &Chart<'_>, limit: f64) -> (usize, bool) {
     for half in Halves::of(&chart.mesh.triangles, chart.mesh.corners.len()).single {
         sides[half.triangle as usize][half.side as usize] = Side::Chord(0.0);
     }
-    let second = SecondBound { chart, sides: &sides, limit, enough: limit * (1.0 + SLACK) };
+    let second = SecondBound { chart, sides: &sides, simple: None, limit, enough: limit * (1.0 + SLACK) };
     let confirmed = all.iter().filter(|&&pick| second.judge(pick, true).is_confirmed).count();
     (confirmed, second.refuted(&all).is_some())
 }
