@@ -66,7 +66,8 @@ fn text(info: &Info, limit: usize) -> String {
 fn parts(out: &mut String, info: &Info, limit: usize) {
     let _ = writeln!(out, "\nparts ({})", info.parts.len());
     for part in info.parts.iter().take(limit) {
-        let uncertainty = part.uncertainty.map_or_else(String::new, |u| format!("; uncertainty {u}"));
+        let uncertainty =
+            part.uncertainty.map_or_else(String::new, |mm| format!("; uncertainty {}", length_mm(mm)));
         let entity = part.entity.as_ref().map_or_else(String::new, |entity| format!(" {entity}"));
         let name = if part.name.is_empty() { "(no name)" } else { &part.name };
         let _ = writeln!(out, "  {name}{entity} × {}: {}{uncertainty}", part.instances, contents(part));

@@ -38,6 +38,7 @@ fn options_without_effect_are_refused() {
         refused(&format!("bench {{}} --papers {option}"), &[&bracket], name);
     }
     refused("info {} --full --json", &[&bracket], "--full");
+    refused("info {} --input-format iges", &[&bracket], "is STEP, not IGES");
     assert_eq!(files_in(folder.path()), Vec::<String>::new());
 }
 

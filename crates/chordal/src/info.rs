@@ -91,7 +91,7 @@ pub struct PartInfo {
     pub vertices: usize,
     /// Triangles that are in the file already.
     pub tessellated_triangles: usize,
-    /// The file's own statement of accuracy, in the part's units.
+    /// The file's own statement of accuracy, in millimetres.
     pub uncertainty: Option<f64>,
     /// Its largest gaps.
     pub gaps: GapInfo,
@@ -162,7 +162,7 @@ fn part_info(part: &Part, part_use: &PartUse) -> PartInfo {
         edges: part.edges.len(),
         vertices: part.vertices.len(),
         tessellated_triangles: part.tessellated.iter().map(|t| t.triangles.len()).sum(),
-        uncertainty: part.uncertainty,
+        uncertainty: part.uncertainty.map(|length| length * part_use.scale),
         gaps: GapInfo {
             vertex_to_curve: length(gaps.vertex_to_curve),
             vertex_to_curve_at: entity_name(gaps.vertex_to_curve.source),

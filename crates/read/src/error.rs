@@ -22,10 +22,17 @@ pub enum ReadError {
     /// The content is of no format that this build reads.
     #[error(
         "unrecognised file format; supported are STEP (ISO-10303-21), IGES, BREP (CASCADE Topology), \
-         Open Inventor, \
-         VRML, X3D, free-form OBJ, 3DM, and JSON of Chordal or geomdl"
+         Open Inventor, VRML, X3D, free-form OBJ, 3DM, and JSON of Chordal or geomdl"
     )]
     UnknownFormat,
+    /// The content is not of the requested format, but of another one.
+    #[error("the file is {found}, not {requested}")]
+    OtherFormat {
+        /// The format that the caller named.
+        requested: Format,
+        /// The format of the content.
+        found: Format,
+    },
     /// The content is a mesh of triangles and no CAD model.
     #[error(
         "a triangle mesh ({format}) is no CAD model; `chordal check` examines a mesh, `chordal sew` joins \

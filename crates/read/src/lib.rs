@@ -103,12 +103,14 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, options: &ReadOptions) -
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(ReadError::Empty);
     }
+    let requested = format;
     let format = format.or_else(|| Format::of(&bytes)).ok_or_else(|| unknown(&bytes))?;
     if options.winding.is_some() && !format.has_winding() {
         return Err(ReadError::NoWinding { format });
     }
     let bytes = if format.is_text(&bytes) { encoding::as_utf8(bytes) } else { bytes };
-    let mut model = format.read(&bytes, options)?;
+    let mut model =
+        format.read(&bytes, options).map_err(|error| requested_wrongly(requested, &bytes, error))?;
     settle_surfaces::make_sizes_positive(&mut model);
     settle_surfaces::turn_offset_profiles(&mut model);
     settle_surfaces::leave_out_still_spans(&mut model);
@@ -139,7 +141,15 @@ fn excerpt_of_step(_: &[u8], _: &[u64]) -> Option<String> {
     None
 }
 
-/// Content that no reader knows: often a mesh.
+/// The error for content that a reader refuses: if another format was recognised, the request was wrong.
+fn requested_wrongly(requested: Option<Format>, bytes: &[u8], error: ReadError) -> ReadError {
+    match (requested, Format::of(bytes)) {
+        (Some(requested), Some(found)) if requested != found => ReadError::OtherFormat { requested, found },
+        _ => error,
+    }
+}
+
+/// The error for content of an unknown format, which is often a mesh.
 fn unknown(bytes: &[u8]) -> ReadError {
     match triangle_mesh::format_of(bytes) {
         Some(format) => ReadError::TriangleMesh { format },
