@@ -10,13 +10,13 @@ const BATCH_SCHEMA: &str = "chordal-report-batch/2";
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Batch {
     schema: &'static str,
-    /// Those whose mesh was written, in the order of the inputs.
+    /// The inputs whose mesh was written, in their order.
     pub reports: Vec<Report>,
-    /// Those of which nothing was written.
+    /// The inputs without a mesh.
     pub failed: Vec<BatchFailure>,
 }
 
-/// An input of which nothing was written.
+/// An input without a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BatchFailure {
     /// Its path.

@@ -27,7 +27,7 @@ pub fn run(args: &CheckArgs) -> Exit {
     if found.clean() && !args.tolerance.is_some_and(far) { Exit::Clean } else { Exit::Problems }
 }
 
-/// What to do with a CAD model that is given in place of a mesh.
+/// A hint for a CAD model in place of a mesh.
 pub fn cad_hint(path: &Path) -> &'static str {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     match InputFormat::of_extension(extension) {

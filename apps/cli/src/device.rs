@@ -1,4 +1,4 @@
-//! `--device`: who evaluates faces with thousands of points.
+//! `--device`: the processor or a graphics device evaluates faces with thousands of points.
 
 use crate::args::{EvaluateArg, MeshArgs};
 use chordal::tessellate::Bulk;

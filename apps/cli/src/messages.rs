@@ -1,4 +1,4 @@
-//! What people read about a mesh.
+//! The messages about a mesh on standard error.
 
 use crate::exit::say;
 use chordal::brep::issue::words::{count, length_mm, number};

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Where the mesh of one input goes.
+/// The destination of the mesh of one input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Standard output.
@@ -17,7 +17,7 @@ pub enum Target {
     File(PathBuf),
 }
 
-/// Where the outputs go.
+/// The destinations of all meshes.
 #[derive(Debug)]
 pub struct Outputs {
     targets: Vec<Target>,
@@ -205,7 +205,7 @@ fn folder_exists(folder: Option<&Path>) -> Result<(), String> {
     }
 }
 
-/// A mesh given to be meshed has the name that its mesh would have.
+/// A hint for a triangle mesh in place of a model: its name is that of the output.
 fn mesh_hint(output: &Path) -> &'static str {
     let is_obj = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
     if is_obj {

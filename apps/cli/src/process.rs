@@ -1,7 +1,7 @@
-//! What the operating system gives the program: threads, memory.
+//! Resources of the operating system: threads, memory.
 
-/// The stack of every thread, in bytes. Readers follow nested entities by recursion, to depths that they limit.
-/// The main thread of Windows has 1 MiB, which is too small for these limits.
+/// The stack of every thread, in bytes. Readers follow nested entities by recursion, to depths that they
+/// limit. The main thread of Windows has 1 MiB, which is too small for these limits.
 const STACK: usize = 16 << 20;
 
 /// Runs `work` in a thread with a stack that is deep enough for every reader.

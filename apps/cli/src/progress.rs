@@ -32,7 +32,7 @@ impl Bar {
         self.0.set_message(what);
     }
 
-    /// What a mesher calls.
+    /// The callback for a mesher.
     pub fn listener(&self) -> impl Fn(Phase, f64) -> ControlFlow<()> + Send + Sync + 'static {
         let bar = self.0.clone();
         move |phase, fraction| {

@@ -16,16 +16,16 @@ pub struct RenderArgs {
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x960", value_parser = parse_size)]
     pub size: SizeArg,
-    /// iso, top, bottom, front, back, left, right, or the places of the eye and of what it looks at,
-    /// x,y,z,x,y,z in mm.
+    /// iso, top, bottom, front, back, left, right, or the positions of the eye and the target in mm, as
+    /// x,y,z,x,y,z.
     #[arg(long, value_name = "VIEW", default_value = "iso", allow_hyphen_values = true)]
     pub camera: String,
     #[arg(long, value_enum, default_value = "orthographic")]
     pub projection: ProjectionArg,
-    /// Move a camera with a place of its own until it sees the whole model; the named ones always do.
+    /// Move a camera given by position until it sees the whole model; named cameras always do.
     #[arg(long)]
     pub fit: bool,
-    /// How much nearer than what fits, about the middle of the picture.
+    /// Magnification about the middle of the picture; 1 shows the whole model.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_zoom,
         allow_hyphen_values = true)]
     pub zoom: ZoomArg,
@@ -39,13 +39,13 @@ pub struct RenderArgs {
     pub normals: Option<NormalsArg>,
     #[arg(long, value_enum, default_value = "shaded")]
     pub style: StyleArg,
-    /// Leave out the lines of the style.
+    /// Do not draw the lines of the style.
     #[arg(long)]
     pub no_lines: bool,
     /// light, dark, transparent, or a colour #rrggbb.
     #[arg(long, value_name = "COLOUR", default_value = "light")]
     pub background: String,
-    /// Cut away what lies where x·X + y·Y + z·Z > d, mm: X,Y,Z,d.
+    /// Cut away the part of the model with x·X + y·Y + z·Z > d (mm), given as X,Y,Z,d.
     #[arg(long, value_name = "X,Y,Z,d", allow_hyphen_values = true)]
     pub section: Option<String>,
     /// Largest distance between the triangles drawn and the exact surfaces: a length, or a percentage of the
@@ -55,7 +55,7 @@ pub struct RenderArgs {
     /// Which device draws.
     #[arg(long, value_enum, default_value = "best")]
     pub device: DeviceArg,
-    /// Say nothing but what went wrong.
+    /// Suppress results; only problems are shown.
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -103,9 +103,9 @@ pub enum TrimArg {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum NormalsArg {
-    /// Those of the surface at every pixel.
+    /// The normals of the surface at every pixel.
     Exact,
-    /// Those of the samples, interpolated between them.
+    /// The normals at the samples, interpolated between them.
     Interpolated,
 }
 

@@ -11,7 +11,7 @@ use chordal::{Error, MeshOptions, Mesher, Model, OutputFormat, Tolerance};
 use std::cell::RefCell;
 
 thread_local! {
-    /// What the host wrote, and what it will read.
+    /// The buffers that the host writes and reads.
     static INPUT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
     static RESULT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }

@@ -1,5 +1,5 @@
-//! How far a surface over a piece of its parameters is from linear, at most: from its largest second
-//! derivatives, by closed forms and by differences of control points.
+//! An upper bound of the distance of a surface from linear over a piece of its parameters: from its largest
+//! second derivatives, by closed forms and by differences of control points.
 //!
 //! Over a triangle of parameters with extents R the distance between the surface and the linear interpolation
 //! of its corners is at most
@@ -34,7 +34,7 @@ impl Bend {
         smooth / 8.0 + 0.25 * self.jumps.dot(extent)
     }
 
-    /// That of a surface within a box of its own parameters; `None` where there is no simple bound.
+    /// The bound for a surface within a box of its parameters; `None` if there is no simple bound.
     pub fn of(surface: &Surface, within: UvBox) -> Option<Self> {
         let bend = |uu: f64, uv: f64, vv: f64| Some(Self { uu, uv, vv, ..Self::default() });
         match surface {

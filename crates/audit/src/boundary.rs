@@ -9,18 +9,18 @@ use crate::halves::Half;
 use chordal_brep::{Face, Loop};
 use chordal_mesh::FaceMesh;
 
-/// What bounds a face in its chart.
+/// The boundary of a face in its chart.
 #[derive(Debug, Default)]
 pub(crate) struct Boundary {
     /// Chords of the face's loops.
     pub chords: Vec<BoundaryChord>,
-    /// Loops that run as the file says, and the other way round.
+    /// The numbers of loops with the direction of the file, and with the opposite one.
     pub forward: usize,
     pub backward: usize,
-    /// Of each loop, whether the triangles along it run as the file says; `None` where they do not run along
-    /// all of it.
+    /// For each loop, whether its triangles have the direction of the file; `None` where they do not run
+    /// along all of it.
     pub directions: Vec<Option<bool>>,
-    /// The two sides of a cut that only this face knows.
+    /// The two sides of a cut through this face.
     pub cuts: Vec<[Half; 2]>,
     /// Half-edges that are neither.
     pub stray: Vec<Half>,
@@ -88,7 +88,7 @@ fn reverse(chords: &mut [Chord]) {
 /// Half-edges sorted by their positions, each to be used once.
 struct Pool {
     keys: Vec<(u32, u32)>,
-    /// What for: the chord of an edge, or something without one.
+    /// The owner of the half-edge: the chord of an edge, or none.
     taken: Vec<Option<Option<(u32, u32)>>>,
 }
 
@@ -136,7 +136,7 @@ fn claim_loop(pool: &mut Pool, mut chords: Vec<Chord>, found: &mut Boundary) -> 
         found.backward += 1;
         return Some(false);
     }
-    // There and back again along the same edges encloses nothing and may be left out.
+    // A path along edges and back encloses nothing, so it may be missing.
     if encloses_nothing(&chords) && taken.is_empty() && taken_back.is_empty() {
         return None;
     }
@@ -213,7 +213,7 @@ fn pair_cuts(pool: &mut Pool, halves: &[Half], of_face: &FaceMesh, found: &mut B
         let candidates = (start..halves.len())
             .take_while(|&j| pool.keys[j] == (to, from))
             .filter(|&j| pool.taken[j].is_none() && j != i);
-        // Of several the one that fits best: moved by the same vector at both ends.
+        // Of several candidates, the one whose two ends are moved by the same vector.
         let misfit = |j: usize| {
             let at_a = uv(halves[j].b) - uv(halves[i].a);
             let at_b = uv(halves[j].a) - uv(halves[i].b);

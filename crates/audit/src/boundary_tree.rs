@@ -56,7 +56,7 @@ impl Chains {
 pub(crate) struct Side {
     pub a: DVec2,
     pub b: DVec2,
-    /// Where it lies is not known well enough to say what it crosses.
+    /// Its position is not exact enough to decide what it crosses.
     pub is_loose: bool,
 }
 
@@ -146,7 +146,7 @@ impl BoundaryTree {
         }
     }
 
-    /// How often the sides wind around `p`, counter-clockwise.
+    /// The winding number of the sides around `p`, positive counter-clockwise.
     pub fn winding(&self, p: DVec2) -> i32 {
         let mut winding = 0;
         self.on_ray(p, &mut |s| {
@@ -164,7 +164,7 @@ impl BoundaryTree {
     }
 }
 
-/// Of two different nodes that meet, pushes the children of the larger; true where both are leaves.
+/// Replaces the larger of two different nodes that meet by its children; true if both are leaves.
 fn descend(of_a: &Node, of_b: &Node, (a, b): (u32, u32), stack: &mut Vec<(u32, u32)>) -> bool {
     if !meet(&of_a.bounds, &of_b.bounds) {
         return false;

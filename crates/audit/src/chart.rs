@@ -7,7 +7,7 @@ use chordal_mesh::FaceMesh;
 use chordal_nurbs::{DVec2, DVec3, Pole, Surface, UvBox, Wrap};
 use std::borrow::Cow;
 
-/// Where a corner lies on a pole.
+/// A corner on a pole.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AtPole {
     /// The parameter that is constant at the pole.
@@ -26,7 +26,7 @@ pub(crate) struct Chart<'a> {
     pub poles: Vec<Pole>,
     /// The poles are points but for rounding, and not sides that are short against the tolerance.
     pub poles_are_points: bool,
-    /// Of every corner the pole that it lies on; empty without poles.
+    /// For each corner, the pole that it lies on; empty if the surface has no poles.
     at_poles: Vec<Option<AtPole>>,
     /// The surface at every corner.
     pub xyz: Vec<DVec3>,

@@ -6,7 +6,7 @@ use crate::report::{AuditOptions, Claim};
 use chordal_brep::{FaceGeometry, Part};
 use chordal_mesh::PartMesh;
 
-/// What all faces of a part share.
+/// The data that all faces of a part share.
 pub(crate) struct Context<'a> {
     pub part: &'a Part,
     pub mesh: &'a PartMesh,
@@ -37,7 +37,7 @@ impl Context<'_> {
         (AIM * tolerance, claimed)
     }
 
-    /// What a simple bound has to confirm: the claimed error of the face, or the tolerance where there is none.
+    /// The error that a simple bound must confirm: the one claimed for the face, else the tolerance.
     pub fn to_confirm(&self, face: usize) -> f64 {
         let tolerance = self.options.tolerance;
         let claimed = self.claim(face).map(|c| c.proven_error).filter(|e| e.is_finite());

@@ -1,7 +1,7 @@
 //! Cuts: where a face's triangles are glued to each other along a line that is no edge of the model.
 //!
 //! A seam's two sides lie whole periods apart in the chart: nothing is between them. Where triangles whose
-//! corners are not three vertices were left out, a sliver of surface between the two sides has a single mesh
+//! corners are not three vertices were omitted, a sliver of surface between the two sides has a single mesh
 //! edge over it. At a pole the sectors of [`crate::fan`] cover it; elsewhere it needs a bound of its own:
 //! that of the vector error e = S − L against the affine map L of the sliver onto the edge (see
 //! `chordal_nurbs::facet_bound` for the formula along one direction), or, where the sides are a hair apart on
@@ -11,7 +11,7 @@ use crate::chart::Chart;
 use crate::halves::Half;
 use chordal_nurbs::{DVec2, DVec3, Piece, Surface, SurfaceBounds, UvBox};
 
-/// What is between the two sides of a cut.
+/// The relation of the two sides of a cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Cut {
     /// Nothing: one side is the other moved by whole periods.
@@ -36,7 +36,7 @@ pub(crate) fn judge(
     let (b2, a2) = (uv(second.a), uv(second.b));
     let size = chart.uv_box.size();
     let close = |d: DVec2| d.abs().cmple(SAME_UV * (size + a.abs().max(b.abs()))).all();
-    // Whichever end needs no pole tells by how many periods the sides are apart.
+    // An end that is not on a pole determines by how many periods the sides are apart.
     let at_a = chart.whole_turns(a2 - a);
     let at_b = chart.whole_turns(b2 - b);
     let (off_a, off_b) = (a2 - a - at_a, b2 - b - at_b);

@@ -10,8 +10,9 @@
 //!      └────┴───────┘
 //! ```
 //!
-//! What is not farther than the largest distance seen so far, plus a precision, is done. Every cut either
-//! meets another triangle or halves a piece, and a piece as small as the precision is done, so it ends.
+//! A piece that is not farther than the largest distance so far, plus a precision, is finished. Every cut
+//! either meets another triangle or halves a piece, and a piece as small as the precision is done, so it
+//! ends.
 
 use crate::triangle_tree::{Nearest, TriangleTree, closest_point};
 use glam::DVec3;

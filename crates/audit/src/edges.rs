@@ -16,7 +16,7 @@ use std::cmp::Ordering;
 /// is rounding. The point there is compared as well.
 const BREAK: f64 = 1e-12;
 
-/// What was recomputed about one edge.
+/// The findings about one edge.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeAudit {
     /// Per chord, the bound of its distance from the curve.

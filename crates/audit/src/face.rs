@@ -89,7 +89,7 @@ struct OnSurface {
     derivatives: [DVec3; 2],
 }
 
-/// What the corners of one task showed.
+/// The findings about the corners of one task.
 #[derive(Clone, Copy, Default)]
 struct CornerFindings {
     gap: f64,
@@ -166,7 +166,7 @@ fn is_misplaced(context: &Context<'_>, chart: &Chart<'_>, position: u32, on_surf
         let pole = chart.poles.iter().any(|pole| pole.point.distance(p) <= 0.1 * context.options.tolerance);
         return !pole || distance > 0.1 * context.options.tolerance + context.options.coordinate_rounding;
     }
-    // What the mesher owns up to is the file's looseness as far as anyone can tell.
+    // The mesher reports this distance as the looseness of the file, and nothing contradicts that.
     if context
         .claim(chart.mesh.face as usize)
         .is_some_and(|c| distance <= c.gap * (1.0 + 1e-6) + chart.rounding)
@@ -189,7 +189,7 @@ fn normal_agrees(surface: &Surface, uv: DVec2, cross: DVec3, stated: DVec3, sign
     }
 }
 
-/// What the triangles of one task showed.
+/// The findings about the triangles of one task.
 #[derive(Clone, Copy, Default)]
 struct TriangleFindings {
     degenerate: usize,
@@ -268,7 +268,7 @@ fn is_degenerate(index: [u32; 3], p: [DVec3; 3], rounding: f64) -> bool {
 }
 
 /// Files lie about the sense of a surface or about the direction of a loop, but hardly about both; unless the
-/// shell is inside out in the file, which only its volume tells.
+/// shell is inside out in the file, which only its volume shows.
 fn is_turned_over(chart: &Chart<'_>, bounds: &Boundary, face: &Face) -> bool {
     chart.turned != face.normal_reversed() && bounds.forward == 0
 }

@@ -1,9 +1,9 @@
-//! What the audit collects about one face.
+//! The findings of the audit about one face.
 
 use crate::report::{FaceAudit, Problem, Subject};
 use chordal_brep::{AuditIssue, Face};
 
-/// What was found out about one face.
+/// The findings about one face.
 #[derive(Debug, Default)]
 pub(crate) struct FaceFindings {
     pub audit: FaceAudit,

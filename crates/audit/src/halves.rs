@@ -21,7 +21,7 @@ pub(crate) fn half_key(from: u32, to: u32) -> (u64, bool) {
 /// Half-edges of one face.
 #[derive(Debug, Default)]
 pub(crate) struct Halves {
-    /// Those without a partner.
+    /// The half-edges without a partner.
     pub single: Vec<Half>,
     /// Corner pairs (a, b) with exactly one half-edge in each direction.
     pub matched: Vec<(u32, u32)>,

@@ -12,7 +12,7 @@
 //! - Each shell is closed and oriented by the identity of its vertices (`shell`), and no facets of a closed
 //!   shell cut each other (`self_intersections`).
 //!
-//! Of two meshes of which nothing else is known, [`largest_distance`] gives the distance by branch and bound.
+//! [`largest_distance`] computes the distance of any two meshes by branch and bound.
 
 mod area;
 mod bend;

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 /// Two formulas for the same bound differ by less than this share of it.
 const SAME: f64 = 1e-9;
 
-/// Of each triangle the sides, as the bounds see them; of a plane none.
+/// The sides of each triangle, for the bounds; empty on planes.
 pub(crate) fn sides(chart: &Chart<'_>, at: &Boundary) -> Vec<[Side; 3]> {
     if matches!(chart.surface, Surface::Plane { .. }) {
         return Vec::new();
@@ -76,9 +76,9 @@ fn slivers_error(chart: &Chart<'_>, bounds: &SurfaceBounds<'_>, at: &Boundary, f
 /// The largest bounds of a face's triangles.
 #[derive(Clone, Copy, Debug, Default)]
 struct FacetsError {
-    /// Of all triangles, those at poles over their sectors.
+    /// The bound of all triangles; triangles at poles stand for their sectors.
     error: f64,
-    /// Of triangles that touch no pole.
+    /// The bound of the triangles without a corner on a pole.
     plain: f64,
 }
 

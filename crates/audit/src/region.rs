@@ -1,9 +1,9 @@
 //! Which part of the surface the mesh of a face covers.
 //!
-//! A bound of the distance does not tell one part of a surface from another. That the boundary of the mesh is
-//! the face's loops ([`crate::boundary`]), that all triangles run one way round and that none lies on another
-//! ([`crate::overlap`]) leaves two regions where the surface is closed: each loop has the face on one side
-//! and the rest of the surface on the other. Here the file's directions decide.
+//! A bound of the distance does not distinguish one part of a surface from another. That the boundary of the
+//! mesh is the face's loops ([`crate::boundary`]), that all triangles run one way round and that none lies on
+//! another ([`crate::overlap`]) leaves two regions where the surface is closed: each loop has the face on one
+//! side and the rest of the surface on the other. Here the file's directions decide.
 //!
 //! 1. A face with loops has a boundary; otherwise the whole surface is covered.
 //! 2. On a closed surface the face is on the left of its loops, seen against the normal that the file gives
@@ -67,11 +67,11 @@ fn is_back(one: &Coedge, other: &Coedge) -> bool {
 pub(crate) enum LoopSide {
     /// It is, or only one side is bounded.
     Right,
-    /// Its triangles face as the file says, and its loops run the other way round. A shell that is closed and
-    /// consistent refutes the direction of the loops: the neighbours run along the same edges.
+    /// Its triangles face as in the file, and its loops have the opposite direction. A shell that is closed
+    /// and consistent refutes the direction of the loops: the neighbours run along the same edges.
     AgainstLoops,
-    /// Its triangles run along the loops as the file says, and face the other way. The neighbours cannot
-    /// tell: a cap of a sphere and the rest of it close the same hole, and only the sense of the face
+    /// Its triangles run along the loops as in the file, and face the other way. The neighbours do not
+    /// show it: a cap of a sphere and the rest of it close the same hole, and only the sense of the face
     /// differs.
     AgainstSense,
 }

@@ -4,7 +4,7 @@ use chordal_brep::{AuditIssue, Issue, Severity, Source};
 use chordal_nurbs::Box3;
 use std::fmt;
 
-/// What the mesh has to keep, in the part's own units.
+/// The limits that the mesh must keep, in the units of the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AuditOptions {
@@ -82,9 +82,9 @@ pub enum Subject {
 /// Something wrong with the mesh of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// What it was found in.
+    /// The element with the problem.
     pub subject: Subject,
-    /// What was found.
+    /// The problem.
     pub issue: AuditIssue,
     /// The entity of the file.
     pub source: Source,

@@ -113,7 +113,7 @@ fn picked(chart: &Chart<'_>, is_largest_bounded: bool) -> Vec<Pick> {
     share.chain(largest).collect()
 }
 
-/// What is known of one facet.
+/// The data of one facet.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Verdict {
     /// It is within what is to be confirmed.
@@ -125,11 +125,11 @@ struct Verdict {
 struct SecondBound<'a, 'b> {
     chart: &'a Chart<'b>,
     sides: &'a [[Side; 3]],
-    /// What it confirms is not divided.
+    /// A facet with a bound up to this is not divided.
     simple: Option<SimpleBound<'a>>,
     /// No point may be farther off.
     limit: f64,
-    /// What is to be confirmed.
+    /// The error that must be confirmed.
     enough: f64,
 }
 
@@ -184,7 +184,7 @@ impl SecondBound<'_, '_> {
         Verdict { is_confirmed, beyond: search.beyond }
     }
 
-    /// That of the surface over a triangle; `None` across the seam of its own parameters.
+    /// The bound of the surface over a triangle; `None` across the seam of its parameters.
     fn bend(&self, uv: [DVec2; 3]) -> Option<Bend> {
         let moved = self.chart.wrap.apply(uv[0]) - uv[0];
         let within = UvBox::from_points(uv.map(|p| p + moved));
@@ -215,7 +215,7 @@ struct Piece {
     xyz: [DVec3; 3],
     /// Their distances from the target, at most.
     off: [f64; 3],
-    /// That of the surface over it.
+    /// The bound of the surface over the facet.
     bend: Option<Bend>,
     level: u32,
 }
@@ -289,7 +289,7 @@ struct Target {
     xyz: [DVec3; 3],
     /// In-plane normals of the sides, outwards.
     outward: [DVec3; 3],
-    /// Of each side (opposite corner i), whether the face ends there.
+    /// For each side (opposite corner i), whether the face ends there.
     ends: [bool; 3],
     /// The facets across the other sides, where they are known.
     neighbours: [Option<[DVec3; 3]>; 3],
@@ -306,7 +306,7 @@ impl Target {
         Some(Self { xyz, outward, ends: sides.map(|s| s != Side::Inner), neighbours: [None; 3] })
     }
 
-    /// How far the plane piece between three points is from the mesh, at most.
+    /// An upper bound of the distance of the triangle between three points from the mesh.
     fn farthest(&self, points: [DVec3; 3]) -> f64 {
         let [p, q, r] = points;
         let first = self.nearest(p, self.ends).1;
@@ -319,7 +319,7 @@ impl Target {
         across.fold(own, f64::min)
     }
 
-    /// The same by the facet and the one across a side; `None` where that says nothing.
+    /// The same by the facet and its neighbour across a side; `None` if that gives no bound.
     fn farthest_across(&self, points: [DVec3; 3], i: usize) -> Option<f64> {
         let neighbour = self.neighbours[i]?;
         let mut ends = self.ends;

@@ -13,7 +13,7 @@
 //! shows that they lie one beside the other ([`crate::graph`]). The facets of a plane, cylinder, cone, sphere
 //! or plain torus lie so because their parameters do not overlap, which is checked in the chart.
 //!
-//! Of each pair of faces it is then decided whether the faces themselves cut each other in the file
+//! For each pair of faces, it is then decided whether the exact faces cross in the file
 //! ([`crate::exact_crossing`]), or only their facets do.
 
 use crate::exact_crossing::{InFile, in_file};

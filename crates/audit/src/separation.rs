@@ -17,10 +17,10 @@ use chordal_brep::{FaceGeometry, Part};
 use chordal_mesh::{FaceMesh, PartMesh};
 use chordal_nurbs::{Box3, DVec3, Surface};
 
-/// What counts as beside the plane, in multiples of what its own vertices lie off it.
+/// Points further from the plane than this multiple of the distance of its own vertices are beside it.
 const CLEAR: f64 = 1e6;
 
-/// What a height over a plane may be off by rounding, relative to the coordinates.
+/// The rounding error of a height over a plane, relative to the coordinates.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A face that its facets show to be plane.

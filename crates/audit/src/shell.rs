@@ -8,7 +8,7 @@ use chordal_brep::{AuditIssue, Loop};
 use chordal_nurbs::math;
 use rustc_hash::FxHashMap;
 
-/// What was found out about one shell.
+/// The findings about one shell.
 #[derive(Debug, Default)]
 pub(crate) struct ShellFindings {
     pub audit: ShellAudit,

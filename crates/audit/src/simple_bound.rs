@@ -32,7 +32,7 @@ const MOST_DEPTH: f64 = 0.6;
 /// The simple bounds of one surface.
 pub(crate) struct SimpleBound<'a> {
     surface: &'a Surface,
-    /// Of a cone, the tangent and the cosine of its half angle.
+    /// The tangent and the cosine of the half angle of a cone.
     slope: [f64; 2],
     spline: Option<SplineBound<'a>>,
 }
@@ -46,7 +46,7 @@ impl<'a> SimpleBound<'a> {
         Self { surface, slope, spline: SplineBound::new(surface) }
     }
 
-    /// That of a surface on which it is a closed form.
+    /// The bound for a surface with a closed form.
     pub fn quick(surface: &'a Surface) -> Option<Self> {
         let is_quick = matches!(
             surface,

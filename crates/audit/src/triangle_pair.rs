@@ -185,7 +185,7 @@ fn on_same_strict_side(a: f64, b: f64) -> bool {
     (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
 }
 
-/// Both lie in one plane: true where their insides overlap.
+/// For triangles in one plane: true if their interiors overlap.
 fn overlap_in_plane(s: &Triangle, t: &Triangle) -> bool {
     let flat = Projection::of(s);
     let cross = |i: usize, j: usize| {

@@ -87,7 +87,7 @@ pub(crate) fn closest_point(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     if denominator == 0.0 { a } else { a + ab * (vb / denominator) + ac * (vc / denominator) }
 }
 
-/// Of a triangle without area.
+/// The closest point of a triangle without area.
 fn closest_on_sides(p: DVec3, t: [DVec3; 3]) -> DVec3 {
     let on_side = |i: usize| {
         let (a, d) = (t[i], t[(i + 1) % 3] - t[i]);

@@ -22,13 +22,13 @@ use crate::context::Context;
 use crate::halves::Half;
 use chordal_nurbs::{DVec2, DVec3, Surface};
 
-/// What a point may be off, in chords.
+/// The tolerance of a position, in chords.
 const SHARE: f64 = 0.5;
 
 /// Parameters may be off by this by rounding, relative to the chart.
 const ROUNDING: f64 = 1e-9;
 
-/// True where the boundary in the chart is known to be the exact loops; false says nothing.
+/// True if the boundary in the chart is known to be the exact loops; false proves nothing.
 pub(crate) fn is_unrolled(context: &Context<'_>, chart: &Chart<'_>, bounds: &Boundary) -> bool {
     // The parameters of a plane are coordinates.
     matches!(chart.surface, Surface::Plane { .. })

@@ -26,7 +26,7 @@ use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 
-/// What an issue means for the result.
+/// The consequence of an issue for the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -126,7 +126,7 @@ impl From<ResultIssue> for IssueKind {
 /// Something that was repaired, guessed, dropped or rejected, with the entity of the file that it concerns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Issue {
-    /// What it means for the result.
+    /// The consequence for the result.
     pub severity: Severity,
     /// The entity and line in the file.
     pub source: Source,

@@ -9,6 +9,6 @@ pub struct EdgeSamples {
     pub t: Vec<f64>,
     /// Positions; the first and the last are those of the vertices of the part.
     pub points: Vec<DVec3>,
-    /// Of every chord, an upper bound of its distance from the curve.
+    /// For each chord, an upper bound of its distance from the curve.
     pub sag: Vec<f64>,
 }

@@ -10,7 +10,7 @@ pub trait SeamMetric: Debug {
     fn length(&self, jet: &SurfaceJet, step_uv: DVec2) -> f64;
 }
 
-/// What the chords of cuts through a face must keep.
+/// The limits that the chords of cuts through a face must keep.
 #[derive(Clone, Copy, Debug)]
 pub struct Seams<'a> {
     /// Measures chords.

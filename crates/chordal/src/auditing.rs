@@ -11,7 +11,7 @@ use chordal_tessellate::{Bound, Cancel, FaceReport, FacetCut, Options, tessellat
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// What the audit found out about one part; lengths in the part's own units.
+/// The findings of the audit about one part; lengths are in the units of the part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct AuditedPart {
     pub shells: Vec<AuditedShell>,

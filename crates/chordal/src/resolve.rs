@@ -32,8 +32,8 @@ pub struct Resolved {
     pub boundary_tolerance: f64,
     /// The diagonal of the tight box in millimetres, if the tolerance was requested in percent.
     pub diagonal: Option<f64>,
-    /// What placing the mesh and rounding it to the format's numbers may cost, in millimetres: kept back from
-    /// the tolerance of the parts.
+    /// The largest error by placing the mesh and rounding its coordinates, in millimetres, which is
+    /// subtracted from the tolerance of the parts.
     pub rounding: f64,
     /// How every part is placed.
     pub uses: Vec<PartUse>,

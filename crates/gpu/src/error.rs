@@ -3,7 +3,7 @@
 use crate::device_choice::{ADVICE, BACKENDS, DeviceChoice};
 use std::fmt;
 
-/// What went wrong between here and the device.
+/// Why a device could not be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {

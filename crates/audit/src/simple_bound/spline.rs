@@ -62,7 +62,7 @@ struct FacetFrame {
     outward: [DVec2; 3],
 }
 
-/// What the coefficients over all parts show.
+/// The findings from the coefficients over all parts.
 #[derive(Default)]
 struct Seen {
     along: f64,
@@ -133,7 +133,7 @@ impl<'a> SplineBound<'a> {
         first + self.knots[axis][first + 1..self.end(axis)].partition_point(|&k| k <= middle)
     }
 
-    /// Those of the surface over a part, in the facet's frame.
+    /// The coefficients of the surface over a part, in the facet's frame.
     fn coefficients(&self, part: &[Corner; 3], frame: &FacetFrame, scratch: &mut Scratch) {
         let Scratch { weights: of_axes, rows, coefficients } = scratch;
         let [p, q] = self.degree;

@@ -1,5 +1,5 @@
-//! How far the edges of crossing loops are off what they should lie on: what lies within that of each other
-//! may be one in the file.
+//! The inaccuracy of edges of crossing loops. Edges within this distance of each other may be the same edge
+//! in the file.
 //!
 //! The *looseness* of an edge is the largest distance of its ends from its vertices, and of its samples from
 //! the surfaces of the faces whose loops cross.
@@ -10,7 +10,7 @@ use chordal_brep::{Edge, Part, VertexId};
 use chordal_nurbs::DVec3;
 use std::collections::BTreeMap;
 
-/// What is off by more than this part of the part's size is another fault than a loose edge.
+/// A distance larger than this fraction of the part's size is not looseness but a fault of another kind.
 const LOOSEST: f64 = 1e-3;
 
 /// Loops that hook back at a vertex by up to this many times the looseness of their edges meet in the vertex.

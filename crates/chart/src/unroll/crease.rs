@@ -295,7 +295,7 @@ impl Cutter {
         let along = |i: usize| self.line.along(self.points[i].uv);
         let belongs = |step: &&Step| {
             let (a, b) = (side * off(step.from), side * off(step.to));
-            // What runs along the line belongs to the side on its left.
+            // A step along the line belongs to the side on its left.
             if a == 0.0 && b == 0.0 {
                 side * (along(step.from) - along(step.to)) > 0.0
             } else {

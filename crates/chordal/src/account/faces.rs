@@ -22,7 +22,7 @@ pub(super) fn add_faces(report: &mut Report, entry: &Entry<'_>, rounding: f64) {
     }
 }
 
-/// What sewing moved the border of a face by is inaccuracy of the file as well.
+/// The distance by which sewing moved the border of a face is inaccuracy of the file as well.
 fn with_moves(entry: &Entry<'_>, index: usize, of_face: &FaceReport) -> FaceReport {
     let moved = entry.sewn.and_then(|s| s.face_moves.get(index)).copied().unwrap_or(0.0);
     FaceReport { gap: of_face.gap.max(moved), ..of_face.clone() }
@@ -108,7 +108,7 @@ fn strategy(report: &Report, of_face: &FaceReport) -> Option<String> {
     (of_face.triangles > 0).then(|| by.to_owned())
 }
 
-/// What became of a face, and why it has no triangles.
+/// The status of a face, and the reason why it has no triangles.
 fn outcome(face: &Face, of_face: &FaceReport) -> (FaceStatus, Option<(Severity, IssueKind)>) {
     if let Some(issue) = face.failure() {
         return (FaceStatus::Failed, Some((Severity::Error, issue.for_owner(face.source).kind)));

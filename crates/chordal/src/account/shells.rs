@@ -59,7 +59,7 @@ fn leak(entry: &Entry<'_>, index: usize, shell: &AuditedShell) -> Problem {
     Problem::new(&issue).in_part(&entry.part.name)
 }
 
-/// What the shells add up to. A face outside every shell is open by design: no shell of the file joins it.
+/// The sum of all shells. A face outside every shell is open by design: no shell of the file joins it.
 pub(super) fn closedness(report: &Report) -> Option<Closedness> {
     let shells = &report.shells;
     if shells.leaking > 0 {

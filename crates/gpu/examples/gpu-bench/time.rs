@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 /// No measurement goes on for longer, unless one run does.
 const PATIENCE: Duration = Duration::from_millis(600);
-/// What takes longer the first time is no kernel that is being compiled.
+/// A first run above this does not include the compilation of a kernel.
 const WARMING: Duration = Duration::from_secs(5);
 
 /// The shortest of several runs of `work`, which waits for the device; the first one warms up.
@@ -13,7 +13,7 @@ pub fn seconds(mut work: impl FnMut() -> Result<(), GpuError>) -> Result<f64, Gp
     let began = Instant::now();
     work()?;
     let mut best = began.elapsed().as_secs_f64();
-    // What takes longer than a measurement may is repeated once, if that.
+    // Work that takes longer than a measurement may is repeated once at most.
     for k in 0..20 {
         if began.elapsed() > if k == 0 { WARMING } else { PATIENCE } {
             break;

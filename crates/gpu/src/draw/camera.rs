@@ -5,7 +5,7 @@ use chordal_nurbs::math;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 use std::str::FromStr;
 
-/// How space becomes a picture.
+/// The kind of projection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
     #[default]
@@ -32,7 +32,7 @@ pub enum View {
     At {
         /// Where the eye is.
         eye: DVec3,
-        /// Where it looks.
+        /// The point that it looks at.
         target: DVec3,
     },
 }

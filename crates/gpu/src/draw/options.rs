@@ -63,7 +63,7 @@ impl std::str::FromStr for Background {
     }
 }
 
-/// What lies where `normal · p > offset` (millimetres) is cut away.
+/// A plane that cuts away the points with `normal · p > offset` (millimetres).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionPlane {
     /// The direction of what is cut away.
@@ -90,7 +90,7 @@ pub enum Normals {
     /// bind.
     #[default]
     Exact,
-    /// Those of the samples, interpolated between them.
+    /// The normals at the samples, interpolated between them.
     Interpolated,
 }
 
@@ -102,7 +102,7 @@ pub struct RenderOptions {
     pub size: [u32; 2],
     /// Where the eye is.
     pub view: View,
-    /// How space becomes a picture.
+    /// The projection.
     pub projection: Projection,
     /// Above 1: nearer.
     pub zoom: f64,
