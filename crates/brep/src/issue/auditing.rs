@@ -334,35 +334,7 @@ impl fmt::Display for AuditIssue {
             AuditIssue::InsideOut { volume } => {
                 write!(f, "the shell is inside out: its volume is {} mm³", number(*volume, 4))
             }
-            AuditIssue::SelfIntersections {
-                triangle_pairs,
-                face_pairs,
-                in_file,
-                faces_cross,
-                faces: [a, b],
-            } => {
-                let triangles = count(*triangle_pairs, "pair of triangles", "pairs of triangles");
-                let verb = if *triangle_pairs == 1 { "cuts" } else { "cut" };
-                write!(f, "{triangles} of the shell {verb} each other, ")?;
-                match (a == b, face_pairs) {
-                    (true, 1) => write!(f, "within face {a}"),
-                    (false, 1) => write!(f, "of faces {a} and {b}"),
-                    (true, n) => write!(f, "in {n} pairs of faces, most within face {a}"),
-                    (false, n) => write!(f, "in {n} pairs of faces, most of {a} and {b}"),
-                }?;
-                if faces_cross == face_pairs {
-                    return write!(f, "; the exact faces cross in the file");
-                }
-                match (*in_file, face_pairs - in_file) {
-                    (_, 0) => write!(f, "; {CAUSE_IN_FILE}"),
-                    (0, _) => write!(
-                        f,
-                        "; no crossing of the exact faces was found, a finer tolerance may part them"
-                    ),
-                    (1, _) => write!(f, "; in one of these pairs {CAUSE_IN_FILE}"),
-                    (n, _) => write!(f, "; in {n} of these pairs {CAUSE_IN_FILE}"),
-                }
-            }
+            AuditIssue::SelfIntersections { .. } => self.fmt_self_intersections(f),
             AuditIssue::TooManyFacetsMeet { face_pairs, faces: [a, b] } => {
                 let pairs = count(*face_pairs, "pair of faces", "pairs of faces");
                 write!(
@@ -371,6 +343,15 @@ impl fmt::Display for AuditIssue {
                      {b}"
                 )
             }
+            _ => self.fmt_of_surfaces(f),
+        }
+    }
+}
+
+impl AuditIssue {
+    /// The sentences about triangles on their surfaces, edges on their curves, and claims.
+    fn fmt_of_surfaces(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             AuditIssue::DegenerateTriangles { triangles } => {
                 write!(f, "{} without area", count(*triangles, "triangle", "triangles"))
             }
@@ -454,6 +435,46 @@ impl fmt::Display for AuditIssue {
                 length_mm(*claimed),
                 length_mm(*found)
             ),
+            // Those about the mesh as a whole, its boundary and its shells are written above.
+            AuditIssue::MalformedMesh(_)
+            | AuditIssue::MissingFace
+            | AuditIssue::MissingChords { .. }
+            | AuditIssue::StrayBoundary { .. }
+            | AuditIssue::OpenShell { .. }
+            | AuditIssue::InconsistentEdges { .. }
+            | AuditIssue::NonManifoldEdges { .. }
+            | AuditIssue::InsideOut { .. }
+            | AuditIssue::SelfIntersections { .. }
+            | AuditIssue::TooManyFacetsMeet { .. } => Ok(()),
+        }
+    }
+
+    /// The sentence about triangles of a shell that cut each other.
+    fn fmt_self_intersections(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self::SelfIntersections { triangle_pairs, face_pairs, in_file, faces_cross, faces: [a, b] } =
+            self
+        else {
+            return Ok(());
+        };
+        let triangles = count(*triangle_pairs, "pair of triangles", "pairs of triangles");
+        let verb = if *triangle_pairs == 1 { "cuts" } else { "cut" };
+        write!(f, "{triangles} of the shell {verb} each other, ")?;
+        match (a == b, face_pairs) {
+            (true, 1) => write!(f, "within face {a}"),
+            (false, 1) => write!(f, "of faces {a} and {b}"),
+            (true, n) => write!(f, "in {n} pairs of faces, most within face {a}"),
+            (false, n) => write!(f, "in {n} pairs of faces, most of {a} and {b}"),
+        }?;
+        if faces_cross == face_pairs {
+            return write!(f, "; the exact faces cross in the file");
+        }
+        match (*in_file, face_pairs - in_file) {
+            (_, 0) => write!(f, "; {CAUSE_IN_FILE}"),
+            (0, _) => {
+                write!(f, "; no crossing of the exact faces was found, a finer tolerance may part them")
+            }
+            (1, _) => write!(f, "; in one of these pairs {CAUSE_IN_FILE}"),
+            (n, _) => write!(f, "; in {n} of these pairs {CAUSE_IN_FILE}"),
         }
     }
 }

@@ -35,47 +35,7 @@ pub(super) fn loops(
         return None;
     }
     let chart = &crossed.chart;
-    let runs = runs(crossed, pieces)?;
-    let mut nodes = Nodes::new(chart.points.iter().map(|p| p.uv));
-    let mut strands: Vec<Strand> = Vec::new();
-    let mut made_of: Vec<Option<(EdgeId, bool)>> = Vec::new();
-    for run in &runs {
-        let vertices = run.piece.map(|(id, forward)| {
-            let edge = &part.edges[id.index()];
-            if forward { [edge.start, edge.end] } else { [edge.end, edge.start] }
-        });
-        let piece = match run.piece {
-            Some((id, forward)) => match pieces.replacement(id) {
-                Some((stands, same_way)) => Some((stands, forward == same_way)),
-                None => continue,
-            },
-            None => None,
-        };
-        let mut points = run.points.clone();
-        let last = points.len() - 1;
-        let ends =
-            [nodes.node(vertices.map(|v| v[0]), points[0]), nodes.node(vertices.map(|v| v[1]), points[last])];
-        (points[0], points[last]) = (nodes.points[ends[0] as usize], nodes.points[ends[1] as usize]);
-        let beside = |p: DVec2| ends.iter().all(|&n| nodes.is_apart(n, p));
-        let inner: Vec<DVec2> = points[1..last].iter().copied().filter(|&p| beside(p)).collect();
-        points.splice(1..last, inner);
-        let same = (0..strands.len()).find(|&s| {
-            let this_way = strands[s].ends == ends && made_of[s] == piece;
-            let back = piece.map(|(id, forward)| (id, !forward));
-            let other_way = strands[s].ends == [ends[1], ends[0]] && made_of[s] == back;
-            piece.is_some() && (this_way || other_way)
-        });
-        match same {
-            Some(s) => {
-                let times = if made_of[s] == piece { 1 } else { -1 };
-                strands[s].loops.push((run.polygon, times));
-            }
-            None => {
-                strands.push(Strand { ends, points, loops: vec![(run.polygon, 1)] });
-                made_of.push(piece);
-            }
-        }
-    }
+    let Strands { strands, made_of } = Strands::of(crossed, part, pieces)?;
     let outer: Vec<bool> =
         (0..chart.loops.len()).map(|l| l == 0 || area(polygon(crossed, l)) > 0.0).collect();
     let is_inside = |w: &[i32]| {
@@ -91,9 +51,85 @@ pub(super) fn loops(
     if (0..strands.len()).any(|s| is_guarded(s) && !keeps_direction(s)) {
         return None;
     }
+    let (mut new, open) = chains(found.loops, &strands, &made_of);
+    new.extend(closed(open, part)?.into_iter().map(|coedges| (coedges, true)));
+    // Loops of the chart are oriented by the surface, loops of the part by the face.
+    let backwards = !face.same_sense ^ chart.reversed;
+    let mut loops: Vec<Loop> =
+        new.into_iter().map(|(one, outer)| finished(crossed, part, one, outer, backwards)).collect();
+    loops.extend(face.loops.iter().filter(|l| matches!(l, Loop::Vertex(_))).cloned());
+    Some(loops)
+}
+
+/// The strands of a face, each once however many loops pass it, and the piece of an edge that each is.
+struct Strands {
+    strands: Vec<Strand>,
+    made_of: Vec<Option<(EdgeId, bool)>>,
+}
+
+impl Strands {
+    fn of(crossed: &Crossed<'_, '_>, part: &Part, pieces: &Pieces) -> Option<Self> {
+        let chart = &crossed.chart;
+        let runs = runs(crossed, pieces)?;
+        let mut nodes = Nodes::new(chart.points.iter().map(|p| p.uv));
+        let mut strands: Vec<Strand> = Vec::new();
+        let mut made_of: Vec<Option<(EdgeId, bool)>> = Vec::new();
+        for run in &runs {
+            let vertices = run.piece.map(|(id, forward)| {
+                let edge = &part.edges[id.index()];
+                if forward { [edge.start, edge.end] } else { [edge.end, edge.start] }
+            });
+            let piece = match run.piece {
+                Some((id, forward)) => match pieces.replacement(id) {
+                    Some((stands, same_way)) => Some((stands, forward == same_way)),
+                    None => continue,
+                },
+                None => None,
+            };
+            let mut points = run.points.clone();
+            let last = points.len() - 1;
+            let ends = [
+                nodes.node(vertices.map(|v| v[0]), points[0]),
+                nodes.node(vertices.map(|v| v[1]), points[last]),
+            ];
+            (points[0], points[last]) = (nodes.points[ends[0] as usize], nodes.points[ends[1] as usize]);
+            let beside = |p: DVec2| ends.iter().all(|&n| nodes.is_apart(n, p));
+            let inner: Vec<DVec2> = points[1..last].iter().copied().filter(|&p| beside(p)).collect();
+            points.splice(1..last, inner);
+            let same = (0..strands.len()).find(|&s| {
+                let this_way = strands[s].ends == ends && made_of[s] == piece;
+                let back = piece.map(|(id, forward)| (id, !forward));
+                let other_way = strands[s].ends == [ends[1], ends[0]] && made_of[s] == back;
+                piece.is_some() && (this_way || other_way)
+            });
+            match same {
+                Some(s) => {
+                    let times = if made_of[s] == piece { 1 } else { -1 };
+                    strands[s].loops.push((run.polygon, times));
+                }
+                None => {
+                    strands.push(Strand { ends, points, loops: vec![(run.polygon, 1)] });
+                    made_of.push(piece);
+                }
+            }
+        }
+        Some(Self { strands, made_of })
+    }
+}
+
+/// A loop by the pieces of edges that it passes, each with its direction.
+type Chain = Vec<(EdgeId, bool)>;
+
+/// The loops along edges, each with whether it is an outer one, and the parts along edges of loops that also
+/// pass cuts through the surface.
+fn chains(
+    loops: Vec<Vec<(usize, bool)>>,
+    strands: &[Strand],
+    made_of: &[Option<(EdgeId, bool)>],
+) -> (Vec<(Chain, bool)>, Vec<Chain>) {
     let mut new = Vec::new();
     let mut open = Vec::new();
-    for one in found.loops {
+    for one in loops {
         let coedges = |part_of: &[(usize, bool)]| -> Vec<(EdgeId, bool)> {
             let along = |&(s, forward): &(usize, bool)| made_of[s].map(|(id, way)| (id, way == forward));
             part_of.iter().filter_map(along).collect()
@@ -111,13 +147,7 @@ pub(super) fn loops(
             }
         }
     }
-    new.extend(closed(open, part)?.into_iter().map(|coedges| (coedges, true)));
-    // Loops of the chart are oriented by the surface, loops of the part by the face.
-    let backwards = !face.same_sense ^ chart.reversed;
-    let mut loops: Vec<Loop> =
-        new.into_iter().map(|(one, outer)| finished(crossed, part, one, outer, backwards)).collect();
-    loops.extend(face.loops.iter().filter(|l| matches!(l, Loop::Vertex(_))).cloned());
-    Some(loops)
+    (new, open)
 }
 
 /// The polygons of the chart, cut at vertices and at the cuts of edges.

@@ -61,8 +61,12 @@ impl Unroll<'_, '_> {
                 }
             }
         }
+        Ok(self.rectangle(UvBox { min, max }))
+    }
+
+    /// The polygon around a box of parameters that is the whole surface, cut open straight.
+    fn rectangle(&mut self, whole: UvBox) -> Vec<ChartPoint> {
         let surface = self.context.surface;
-        let whole = UvBox { min, max };
         let (corners, sides) = (whole.corners(), whole.sides());
         let poles = sides.map(|side| side.is_pole(&whole, &surface.poles));
         let keys = self.corner_keys(&corners, &poles);
@@ -87,7 +91,7 @@ impl Unroll<'_, '_> {
             polygon.push(ChartPoint { uv: corners[k], key: keys[k], segment });
             polygon.extend(inner[k].iter().map(|&(key, uv)| ChartPoint { uv, key, segment }));
         }
-        Ok(polygon)
+        polygon
     }
 
     /// The boundary of the whole surface if every straight cut across the closed direction `axis` crosses a
