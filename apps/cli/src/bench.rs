@@ -56,7 +56,7 @@ pub fn run(args: &BenchArgs) -> Exit {
     if timings.len() == args.inputs.len() { Exit::Clean } else { Exit::Nothing }
 }
 
-/// The tables of the document, one object per model.
+/// The tables of the paper, one object per model.
 fn papers(args: &BenchArgs, options: &MeshOptions) -> Exit {
     let cancel = Cancel::default();
     let mut tables = Vec::new();

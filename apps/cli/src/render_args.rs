@@ -20,6 +20,7 @@ pub struct RenderArgs {
     /// x,y,z,x,y,z.
     #[arg(long, value_name = "VIEW", default_value = "iso", allow_hyphen_values = true)]
     pub camera: String,
+    /// The projection.
     #[arg(long, value_enum, default_value = "orthographic")]
     pub projection: ProjectionArg,
     /// Move a camera given by position until it sees the whole model; named cameras always do.
@@ -29,6 +30,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_zoom,
         allow_hyphen_values = true)]
     pub zoom: ZoomArg,
+    /// Draw the mesh or the exact surfaces.
     #[arg(long, value_enum, default_value = "mesh")]
     pub mode: ModeArg,
     /// With --mode nurbs: how faces are trimmed [default: exact].
@@ -37,6 +39,7 @@ pub struct RenderArgs {
     /// With --mode nurbs: the normals that faces are lit by [default: exact].
     #[arg(long, value_enum)]
     pub normals: Option<NormalsArg>,
+    /// How it is drawn.
     #[arg(long, value_enum, default_value = "shaded")]
     pub style: StyleArg,
     /// Do not draw the lines of the style.

@@ -2,7 +2,7 @@
 //!
 //! Source: Balázs, Guthe, Klein 2004, sections 4 and 5.1: the trimming curve in the plane of parameters
 //! becomes Bézier pieces that are cut at the knot lines of the surface, lifted into space and approximated
-//! there; or, as in the method that the document compares with (Kahlesz, Balázs, Klein 2001), approximated in
+//! there; or, as in the method that the paper compares with (Kahlesz, Balázs, Klein 2001), approximated in
 //! the plane, leaf by leaf of a quadtree. What comes out are parameters on the one shared edge. Every chord
 //! is then proven against the model's own curve as any other, so a file whose curves in the plane are loose
 //! costs chords and not the tolerance.

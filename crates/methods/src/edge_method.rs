@@ -22,7 +22,7 @@ pub enum EdgeMethod {
     },
 }
 
-/// An edge method as the command line and the documents know it.
+/// An edge method as the command line and the papers know it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeMethodEntry {
     /// None for the default mesher.

@@ -1,4 +1,4 @@
-//! The trimming loops of faces as the document makes them: each face has its own, and whole loops are
+//! The trimming loops of faces as the paper makes them: each face has its own, and whole loops are
 //! simplified.
 //!
 //! Source: Balázs, Guthe, Klein 2004, Table 2. A mesh shares its edges between faces and keeps the model's

@@ -210,7 +210,7 @@ impl SurfaceEntry {
         let is_worth = uv.len() > form.points().len();
         let evaluator =
             || if is_worth { CoherentEvaluator::new(form) } else { CoherentEvaluator::unswapped(form) };
-        // The document's vertices come in this order anyway.
+        // The paper's vertices come in this order anyway.
         let sorted: Vec<DVec2> = evaluator().order(uv).into_iter().map(|i| uv[i as usize]).collect();
         self.coherent += shortest(|| {
             let mut evaluator = evaluator();

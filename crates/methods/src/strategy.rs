@@ -46,7 +46,7 @@ pub enum Strategy {
     Delaunay(Fill),
 }
 
-/// A strategy as the command line and the documents know it.
+/// A strategy as the command line and the papers know it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StrategyEntry {
     /// None for the default mesher.
@@ -117,7 +117,7 @@ static ENTRIES: &[StrategyEntry] = &[
     entry(
         Some(Strategy::Quadtree(Stretch::Edges)),
         "quadtree-eq3",
-        "the same with the document's bilinear norm",
+        "quadtree with the norm of equation 3 of Kahlesz 2001",
         KAHLESZ,
     ),
     entry(Some(Strategy::Coving), "coving", "a grid inside, triangles between it and the loops", COVING),

@@ -1,4 +1,4 @@
-//! Trimming curves lifted and made polylines: against the surface itself, brute force, and the document's own
+//! Trimming curves lifted and made polylines: against the surface itself, brute force, and the paper's own
 //! way.
 #![allow(clippy::unwrap_used)]
 
@@ -117,7 +117,7 @@ fn spare_degrees_of_short_curves_far_away_go_too() {
     assert!(pieces.iter().all(|piece| piece.uv.degree() == 2), "{pieces:?}");
 }
 
-/// The document's way, interpolation at equal parameters, where it is sound: low degree, polynomial.
+/// The paper's way, interpolation at equal parameters, where it is sound: low degree, polynomial.
 #[test]
 fn lifting_agrees_with_collocation() {
     let mut random = Random(5);

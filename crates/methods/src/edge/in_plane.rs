@@ -5,7 +5,7 @@
 //! the leaves, and over each leaf it may lie δ = (κ − 2ε)/‖bl‖ from its chord, lengths counted in the leaf's
 //! own parameters. Only leaves under the curve are made.
 //!
-//! The document adds up the surface at two points of the plane. The sum holds for the chord in space, too:
+//! The paper adds up the surface at two points of the plane. The sum holds for the chord in space, too:
 //! with E the distance of leaf and bilinear surface at equal parameters and T the twist,
 //!
 //! ```text
@@ -15,7 +15,7 @@
 //!                                       2E + ¼‖T‖ + κ/3 ≤ κ      as E + ¼‖T‖ ≤ ε
 //! ```
 //!
-//! The document's Lemma 2 bounds E for polynomial leaves only. Over rational ones points slide along the
+//! The paper's Lemma 2 bounds E for polynomial leaves only. Over rational ones points slide along the
 //! bilinear surface by as much as weights differ, so E is bounded with them ([`off_bilinear`]).
 
 use super::curve::TrimmingCurve;

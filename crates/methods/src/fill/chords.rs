@@ -1,7 +1,7 @@
 //! Chords of trimming curves judged in the plane of parameters, leaf by leaf.
 //!
 //! Source: Kahlesz, Balázs, Klein 2001, section 6: over each leaf a curve may lie as far from its chord as
-//! the leaf's stretch of lengths allows ([`super::quadtree`]). The document cuts curves at the borders of
+//! the leaf's stretch of lengths allows ([`super::quadtree`]). The paper cuts curves at the borders of
 //! leaves and approximates every piece by itself. Here the curve over a chord is followed over the leaves in
 //! the same way ([`super::tracking`]), but borders set no vertices on edges: the chord must be near enough to
 //! the curve in every leaf that it passes. How near is bounded by the control points of the piece over the

@@ -14,7 +14,7 @@
 //! What lies to the right of the loops is never visited. A part of the graph that hangs together with nothing
 //! else, as a hole within one cell, is tied to the rest by two *bridges*, edges like borders of cells: one to
 //! its left, one to its right, each to the nearest vertex that it can see. A polygon around a hole so becomes
-//! two without one. The document ties the corners of the cell to the hole's nearest vertices, which may cross
+//! two without one. The paper ties the corners of the cell to the hole's nearest vertices, which may cross
 //! another hole; here bridges cross nothing. All decisions are exact.
 
 use chordal_nurbs::DVec2;

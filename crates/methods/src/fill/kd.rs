@@ -10,7 +10,7 @@
 //!           most
 //! ```
 //!
-//! The document leaves the direction of its binary subdivision open; bending more is what its Figure 2 shows.
+//! The paper leaves the direction of its binary subdivision open; bending more is what its Figure 2 shows.
 
 use super::Cut;
 use super::cells::{Rule, Split};

@@ -18,7 +18,7 @@
 //! unevenly its parameters run. It counts the twist of the corners twice; where Lemmas 1 and 2 give less, or
 //! Q is not convex, they decide.
 //!
-//! The document does not say in which directions a patch is halved. Here it is those in which lines of the
+//! The paper does not say in which directions a patch is halved. Here it is those in which lines of the
 //! net bend, both where they bend about alike: halving a cylinder along its axis would double its patches for
 //! nothing.
 

@@ -2,12 +2,12 @@
 //!
 //! Source: Kahlesz, Balázs, Klein 2001, sections 4 and 6. The first leaves are the Bézier patches; one whose
 //! error by Lemmas 1 and 2 ([`super::node`]) is over ε is cut into four. For an error κ along the boundary
-//! the document splits the budget into three parts: ε = κ/3 for the surface on either side of the curve, and
+//! the paper splits the budget into three parts: ε = κ/3 for the surface on either side of the curve, and
 //! the rest for the curve in the plane of parameters, over each leaf by what the leaf stretches lengths:
 //!
 //! ```text
 //! δ = (κ − 2ε)/‖bl‖      bl the bilinear map of the leaf onto its corners
-//! ‖bl‖ = max(‖P2 − P1‖, ‖P3 − P1‖/√2, ‖P4 − P1‖)      the document's (eq. 3): too small, up to three times
+//! ‖bl‖ = max(‖P2 − P1‖, ‖P3 − P1‖/√2, ‖P4 − P1‖)      the paper's (eq. 3): too small, up to three times
 //! ‖bl‖ = the largest singular value of (bl_u bl_v)     of the four corners: exact, as the norm is convex
 //!                                                      along both directions
 //! ```
@@ -20,7 +20,7 @@ use chordal_nurbs::{DVec2, DVec3, NurbsSurface, math};
 /// How it is measured by how much a leaf stretches lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stretch {
-    /// The document's equation 3.
+    /// The paper's equation 3.
     Edges,
     /// The largest singular value.
     SingularValue,
@@ -73,7 +73,7 @@ pub fn at_knots(root: &NurbsSurface) -> Vec<Split> {
     inner(0, root.breaks_u()).chain(inner(1, root.breaks_v())).collect()
 }
 
-/// How much the bilinear map of a leaf stretches lengths of its own parameters: the document's measure.
+/// How much the bilinear map of a leaf stretches lengths of its own parameters: the paper's measure.
 pub fn norm_by_edges(piece: &NurbsSurface) -> f64 {
     let [a, b, c, d] = corners(piece);
     (b - a).length().max((c - a).length() / std::f64::consts::SQRT_2).max((d - a).length())
@@ -120,7 +120,7 @@ mod tests {
         let sheared = patch(&[(0., 0., 0.), (c, s, 0.), (1., 0., 0.), (1. + c, s, 0.)]);
         let exact = (1.0 + c).sqrt();
         assert!((norm(&sheared) - exact).abs() < 1e-15);
-        // The diagonal of the square is that bisector here, so the document's measure agrees; turned by 90°
+        // The diagonal of the square is that bisector here, so the paper's measure agrees; turned by 90°
         // it does not.
         assert!((norm_by_edges(&sheared) - exact).abs() < 1e-15);
         let other = patch(&[(0., 0., 0.), (-c, s, 0.), (1., 0., 0.), (1. - c, s, 0.)]);

@@ -1,4 +1,4 @@
-//! The documents' error formulas as restored, held against what they claim.
+//! The papers' error formulas as restored, held against what they claim.
 //!
 //! Balázs, Guthe, Klein 2004, section 5.2, and Kahlesz, Balázs, Klein 2001, Lemmas 1 and 2, lost constants in
 //! print, and what the former calls ε_approx is no bound at all. Here each constant is reached, or shown to

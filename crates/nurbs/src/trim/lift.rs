@@ -1,6 +1,6 @@
 //! Trimming curves lifted onto their surface, exactly.
 //!
-//! Source: Balázs, Guthe, Klein 2004, section 4. The document finds the lifted curve of degree `d (du + dv)`
+//! Source: Balázs, Guthe, Klein 2004, section 4. The paper finds the lifted curve of degree `d (du + dv)`
 //! by interpolation and a singular value decomposition, which limits it to degrees about 20; here it is
 //! composed in Bernstein form ([`crate::BezierPatch::compose`]), in homogeneous coordinates, so rational
 //! curves and patches are exact, too.
