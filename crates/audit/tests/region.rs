@@ -11,7 +11,9 @@ use chordal_brep::{
 };
 use chordal_mesh::{Corner, FaceMesh, Origin, PartMesh};
 use chordal_nurbs::{Curve, DVec2, DVec3, Frame, NurbsCurve3, Range, Surface, math};
-use chordal_tessellate::{Cancel, FacetCut, Options, tessellate_part_apart};
+use chordal_tessellate::{
+    Cancel, FacetCut, Options, Remembered, tessellate_part_apart, tessellate_part_remembered,
+};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -426,12 +428,33 @@ fn facets_that_cut_each_other_are_refined_until_they_part() {
         cuts.map(|cut| FacetCut { faces: cut.faces, bounds: cut.bounds }).collect()
     };
     let options = Options::new(TOLERANCE);
-    let (parted, report) = tessellate_part_apart(&part, &options, &Cancel::default(), &find);
+    let (parted, report) =
+        tessellate_part_apart(&part, &options, &Cancel::default(), &find, Remembered::default());
     assert!(audited(&part, &parted).clean(), "{:?}", audited(&part, &parted).problems);
     assert!(report.faces.iter().all(|face| face.proven_error <= TOLERANCE));
     assert!(searches.into_inner() > 1);
     let (before, after) = (plain.triangle_count(), parted.triangle_count());
     assert!(before < after && after < 2 * before, "refined at the corner only: {before}, {after}");
+}
+
+#[test]
+fn a_part_is_refined_alike_from_what_is_remembered_of_it() {
+    let part = ball_with_spike(0.999);
+    let (options, cancel) = (Options::new(TOLERANCE), Cancel::default());
+    let find = |part: &Part, mesh: &PartMesh| -> Vec<FacetCut> {
+        let cuts = facet_crossings(part, mesh, &[0]).into_iter();
+        cuts.map(|cut| FacetCut { faces: cut.faces, bounds: cut.bounds }).collect()
+    };
+    let (plain, _, remembered) = tessellate_part_remembered(&part, &options, &cancel, &|_| ());
+    assert_eq!(plain, mesh(&part));
+    let (again, report) = tessellate_part_apart(&part, &options, &cancel, &|_, _| Vec::new(), remembered);
+    assert_eq!(again, plain, "nothing to part");
+    assert!(report.faces.iter().all(|face| face.proven_error <= TOLERANCE));
+    let (_, _, remembered) = tessellate_part_remembered(&part, &options, &cancel, &|_| ());
+    let (parted, _) = tessellate_part_apart(&part, &options, &cancel, &find, remembered);
+    let (anew, _) = tessellate_part_apart(&part, &options, &cancel, &find, Remembered::default());
+    assert_eq!(parted, anew);
+    assert_ne!(parted, plain);
 }
 
 #[test]

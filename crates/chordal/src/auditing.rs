@@ -7,7 +7,7 @@ use chordal_audit::{
 };
 use chordal_brep::{AuditIssue, Issue, Model, Part, Shell};
 use chordal_mesh::PartMesh;
-use chordal_tessellate::{Bound, Cancel, FaceReport, FacetCut, Options, tessellate_part_apart};
+use chordal_tessellate::{Bound, Cancel, FaceReport, FacetCut, Options, Remembered, tessellate_part_apart};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -60,7 +60,9 @@ pub(crate) fn audit_parts(
                     .with_millimetres(part_use.scale)
                     .with_self_intersections(self_intersections);
                 let audit = audited(part, meshed, &requested);
-                let audit = parted(part, meshed, audit, options, &requested, cancel);
+                let remembered = Arc::into_inner(std::mem::take(&mut meshed.remembered));
+                let remembered = remembered.unwrap_or_default();
+                let audit = parted(part, meshed, remembered, audit, options, &requested, cancel);
                 account_of(part, meshed, audit, options)
             }
         })
@@ -90,6 +92,7 @@ fn claims(meshed: &MeshedPart) -> Vec<Claim> {
 fn parted(
     part: &Part,
     meshed: &mut MeshedPart,
+    remembered: Remembered,
     audit: PartAudit,
     options: &Options,
     asked: &AuditOptions,
@@ -113,8 +116,8 @@ fn parted(
     if find(meshed_part, &meshed.mesh).is_empty() {
         return audit;
     }
-    let (mesh, report) = tessellate_part_apart(part, options, cancel, &find);
-    let again = MeshedPart { mesh: Arc::new(mesh), report };
+    let (mesh, report) = tessellate_part_apart(part, options, cancel, &find, remembered);
+    let again = MeshedPart { mesh: Arc::new(mesh), report, remembered: Arc::default() };
     let audit_again = audited(part, &again, asked);
     let is_better = audit_again.self_intersections.len() < audit.self_intersections.len()
         && audit_again.problems.len() <= audit.problems.len();

@@ -6,7 +6,7 @@ use crate::resolve::Resolved;
 use crate::work_limits::Kept;
 use chordal_brep::Model;
 use chordal_mesh::PartMesh;
-use chordal_tessellate::{Cancel, Options, PartReport, tessellate_part};
+use chordal_tessellate::{Cancel, Options, PartReport, Remembered, tessellate_part_remembered};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -17,6 +17,8 @@ pub struct MeshedPart {
     pub mesh: Arc<PartMesh>,
     /// What was done to its faces and edges.
     pub report: PartReport,
+    /// What it takes to refine it, until the audit.
+    pub(crate) remembered: Arc<Remembered>,
 }
 
 impl MeshedPart {
@@ -66,8 +68,9 @@ fn mesh_with(
                 return MeshedPart::default();
             }
             let of_part = counter.part(part);
-            let (mesh, report) = tessellate_part(part, options, cancel, &|done| of_part.done(done));
-            MeshedPart { mesh: Arc::new(mesh), report }
+            let done = |done| of_part.done(done);
+            let (mesh, report, remembered) = tessellate_part_remembered(part, options, cancel, &done);
+            MeshedPart { mesh: Arc::new(mesh), report, remembered: Arc::new(remembered) }
         })
         .collect()
 }

@@ -32,6 +32,8 @@ pub(crate) struct FaceResult {
     pub quads: usize,
     /// The outer loop contradicts the face's sense; the neighbours decide which of the two is right.
     pub doubtful: bool,
+    /// Turned over when the orientation of the part was settled.
+    pub turned: bool,
     /// Positions of the keys that are private.
     pub private: Vec<DVec3>,
     pub proven_error: f64,
@@ -55,6 +57,7 @@ pub(crate) struct FaceResult {
 impl FaceResult {
     /// Reverses the orientation of the face.
     pub fn turn_over(&mut self) {
+        self.turned = !self.turned;
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
         self.normals.iter_mut().for_each(|n| *n = -*n);
     }

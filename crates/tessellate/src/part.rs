@@ -7,6 +7,7 @@ use crate::face_result::{FaceResult, Meshed};
 use crate::fallback::leave_to_default;
 use crate::known_faces::KnownFaces;
 use crate::lower_bound::lower_bound;
+use crate::memo::Memo;
 use crate::options::{Cancel, Options};
 use crate::orient::{settle_orientation, turn_inside_out};
 use crate::panics::caught;
@@ -21,11 +22,15 @@ use chordal_brep::{MeshIssue, Part};
 use chordal_chart::{Chart, Crossed, EdgeSamples, TrimmedFace, Uncrossed, uncrossed};
 use chordal_mesh::PartMesh;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// Loops that cross are made anew this often: each time edges have other chords, which may show crossings
 /// that coarser ones did not.
 const HEALINGS: usize = 3;
+
+/// The faces of a mesh of more triangles are not remembered: they would take as much memory again. The part
+/// is then meshed from the start where facets cut each other.
+const MOST_REMEMBERED: usize = 1_000_000;
 
 /// Meshes one part. Never fails as a whole: a face that cannot be meshed is reported with its reason.
 ///
@@ -36,19 +41,43 @@ pub fn tessellate_part(
     cancel: &Cancel,
     done: &(dyn Fn(usize) + Sync),
 ) -> (PartMesh, PartReport) {
-    in_healings(part, options, cancel, None, done)
+    in_healings(part, options, cancel, None, done, &mut Remembered::default())
+}
+
+/// What faces and edges of a part took and gave, for [`tessellate_part_apart`].
+#[derive(Debug, Default)]
+pub struct Remembered {
+    efforts: Efforts,
+    memo: Mutex<Memo>,
+}
+
+/// As [`tessellate_part`], with what it takes to go on from there.
+pub fn tessellate_part_remembered(
+    part: &Part,
+    options: &Options,
+    cancel: &Cancel,
+    done: &(dyn Fn(usize) + Sync),
+) -> (PartMesh, PartReport, Remembered) {
+    let mut remembered = Remembered::default();
+    let (mesh, report) = in_healings(part, options, cancel, None, done, &mut remembered);
+    if mesh.triangle_count() > MOST_REMEMBERED {
+        remembered.memo = Mutex::default();
+    }
+    (mesh, report, remembered)
 }
 
 /// Meshes one part as [`tessellate_part`] does, and refines it where facets cut each other until they part.
 ///
-/// `find` is called with the part, healed where its loops cross, and a mesh of it.
+/// `find` is called with the part, healed where its loops cross, and a mesh of it. What is remembered of the
+/// part is not made again, and the time that it took counts.
 pub fn tessellate_part_apart(
     part: &Part,
     options: &Options,
     cancel: &Cancel,
     find: &FindCuts<'_>,
+    mut remembered: Remembered,
 ) -> (PartMesh, PartReport) {
-    in_healings(part, options, cancel, Some(find), &|_| ())
+    in_healings(part, options, cancel, Some(find), &|_| (), &mut remembered)
 }
 
 fn in_healings(
@@ -57,10 +86,16 @@ fn in_healings(
     cancel: &Cancel,
     find: Option<&FindCuts<'_>>,
     done: &(dyn Fn(usize) + Sync),
+    remembered: &mut Remembered,
 ) -> (PartMesh, PartReport) {
     let mut known = KnownFaces::default();
-    let mut efforts = Efforts::default();
-    let mut made = mesh_once(part, &known, options, &mut efforts, cancel, find, done);
+    let turn_to = |remembered: &mut Remembered, healed: Option<&Arc<Part>>| {
+        if let Ok(memo) = remembered.memo.get_mut() {
+            memo.turn_to(part, healed);
+        }
+    };
+    turn_to(remembered, None);
+    let mut made = mesh_once(part, &known, options, remembered, cancel, find, done);
     for _ in 0..HEALINGS {
         let is_new = made.crossed.iter().any(|face| !known.touching.contains(face));
         let uncrossed = made.uncrossed.take();
@@ -76,7 +111,8 @@ fn in_healings(
             None => (made.report.healed.clone(), Vec::new()),
         };
         let healed_part = healed.as_deref().unwrap_or(part);
-        let again = mesh_once(healed_part, &known, options, &mut efforts, cancel, find, &|_| ());
+        turn_to(remembered, healed.as_ref());
+        let again = mesh_once(healed_part, &known, options, remembered, cancel, find, &|_| ());
         // Loops that still cross stay as they are in the file.
         if again.crossed.len() >= made.crossed.len() {
             break;
@@ -104,17 +140,18 @@ fn mesh_once(
     part: &Part,
     known: &KnownFaces,
     options: &Options,
-    efforts: &mut Efforts,
+    remembered: &mut Remembered,
     cancel: &Cancel,
     find: Option<&FindCuts<'_>>,
     done: &(dyn Fn(usize) + Sync),
 ) -> MeshedOnce {
-    efforts.cover(part);
+    remembered.efforts.cover(part);
+    let Remembered { efforts, memo } = &*remembered;
     let mut report = PartReport::default();
     // 1. Prepare the surfaces.
     let clock = Stopwatch::of_wall();
     let exact = exact_surfaces(part);
-    let job = PartJob::new(part, &exact, options, efforts, cancel).with_known(known.clone());
+    let job = PartJob::new(part, &exact, options, efforts, cancel).with_known(known.clone()).with_memo(memo);
     report.seconds.heal = clock.seconds();
     // 2. Sample the edges.
     let clock = Stopwatch::of_wall();
@@ -136,7 +173,7 @@ fn mesh_once(
     let uncrossed = job.within_budget(&job.efforts.healing, healing);
     // 4. Join the faces.
     let clock = Stopwatch::of_wall();
-    let PassResult { edges, fewest, edges_given_up, edge_faults, faces, rounds } = result;
+    let PassResult { edges, fewest, edges_given_up, edge_faults, faces, questions, rounds } = result;
     report.rounds = rounds;
     report.edge_faults = edge_faults;
     report.edges_given_up = edges_given_up;
@@ -145,6 +182,13 @@ fn mesh_once(
     settle_orientation(&mut faces);
     turn_inside_out(part, &edges, &mut faces);
     let mesh = stitch(part, &edges, &faces.iter().map(Option::as_deref).collect::<Vec<_>>());
+    job.remembered(|memo| {
+        for (index, (face, question)) in faces.into_iter().zip(questions).enumerate() {
+            if let (Some(face), Some(question)) = (face, question) {
+                memo.keep(index, question, face);
+            }
+        }
+    });
     report.seconds.stitch = clock.seconds();
     MeshedOnce { mesh, report, crossed, uncrossed }
 }

@@ -4,11 +4,13 @@ use crate::budget::{Budget, Spent};
 use crate::edge_use::EdgeUse;
 use crate::known_faces::KnownFaces;
 use crate::limits::{Limits, resolution};
+use crate::memo::Memo;
 use crate::options::{Cancel, Options};
 use chordal_brep::{Face, FaceGeometry, Issue, Loop, MeshIssue, Part, Pcurve};
 use chordal_chart::FaceSurface;
 use chordal_nurbs::{DVec3, Surface};
 use std::borrow::Cow;
+use std::sync::Mutex;
 
 /// The share of the tolerance that is aimed at, so that rounding and the last bit of a bound never matter. It
 /// costs at most half a percent more triangles.
@@ -42,6 +44,8 @@ pub(crate) struct PartJob<'a> {
     pub known: KnownFaces,
     /// What faces and edges took so far, in this pass over the part and earlier ones.
     pub efforts: &'a Efforts,
+    /// What they gave in earlier passes; none where nothing is to be kept.
+    pub memo: Option<&'a Mutex<Memo>>,
     /// Of every face; the reader's reason where there is none.
     pub surfaces: Vec<Result<FaceSurface<'a>, &'a Issue>>,
     /// Of every edge: the faces that use it, each with its curve in that face's parameters.
@@ -73,6 +77,7 @@ impl<'a> PartJob<'a> {
             resolution,
             known: KnownFaces::default(),
             efforts,
+            memo: None,
             surfaces: exact
                 .iter()
                 .map(|found| found.as_ref().map(|s| FaceSurface::new(s, resolution)).map_err(|issue| *issue))
@@ -86,6 +91,17 @@ impl<'a> PartJob<'a> {
     pub fn with_known(mut self, known: KnownFaces) -> Self {
         self.known = known;
         self
+    }
+
+    /// The same with a memory of earlier passes.
+    pub fn with_memo(mut self, memo: &'a Mutex<Memo>) -> Self {
+        self.memo = Some(memo);
+        self
+    }
+
+    /// Looks into the memory of earlier passes, or adds to it.
+    pub fn remembered<T>(&self, look: impl FnOnce(&mut Memo) -> T) -> Option<T> {
+        self.memo.and_then(|memo| memo.lock().ok()).map(|mut memo| look(&mut memo))
     }
 
     /// The faces that use an edge.
@@ -148,6 +164,15 @@ fn uses_of_edges(part: &Part) -> Vec<Vec<(usize, Option<&Pcurve>)>> {
         }
     }
     uses
+}
+
+/// The edges of a face, as its loops run along them.
+pub(crate) fn edges_of_face(part: &Part, face: usize) -> impl Iterator<Item = usize> + '_ {
+    let coedges = part.faces[face].loops.iter().flat_map(|a_loop| match a_loop {
+        Loop::Edges { coedges, .. } => coedges.as_slice(),
+        _ => &[],
+    });
+    coedges.map(|coedge| coedge.edge.index())
 }
 
 /// The diagonal of the box of points of a face's edges.

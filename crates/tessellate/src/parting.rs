@@ -17,11 +17,11 @@
 use crate::closer::{Closer, box_around, tolerance_within};
 use crate::edges::split_chords;
 use crate::face_result::FaceResult;
-use crate::part_job::PartJob;
+use crate::part_job::{PartJob, edges_of_face};
 use crate::rounds::{Pass, PassResult};
 use crate::shared_inner_edges::{separate, unproven_faces};
 use crate::stitch::stitch;
-use chordal_brep::{Loop, Part};
+use chordal_brep::Part;
 use chordal_chart::EdgeSamples;
 use chordal_mesh::PartMesh;
 use chordal_nurbs::Box3;
@@ -156,14 +156,6 @@ fn is_worse(job: &PartJob<'_>, unproven: &[bool], before: &PassResult, after: &P
     let now_unproven = unproven_faces(job, &after.faces);
     let loses_proof = unproven.iter().zip(&now_unproven).any(|(&before, &now)| now && !before);
     loses_proof || before.faces.iter().zip(&after.faces).any(|(before, now)| before.is_ok() && now.is_err())
-}
-
-fn edges_of_face(part: &Part, face: usize) -> impl Iterator<Item = usize> + '_ {
-    let coedges = part.faces[face].loops.iter().flat_map(|a_loop| match a_loop {
-        Loop::Edges { coedges, .. } => coedges.as_slice(),
-        _ => &[],
-    });
-    coedges.map(|coedge| coedge.edge.index())
 }
 
 /// Halves the chords of an edge that are further off than a place allows; false where there are none.

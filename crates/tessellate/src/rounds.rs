@@ -16,14 +16,16 @@ use crate::edges::{SampledEdge, split_chords};
 use crate::effort::{Effort, MAX_ROUNDS, Setback};
 use crate::face_context::FaceContext;
 use crate::face_result::{FaceResult, Meshed};
+use crate::memo::Question;
 use crate::options::Options;
 use crate::panics::caught;
-use crate::part_job::PartJob;
+use crate::part_job::{PartJob, edges_of_face};
 use crate::shared_edge::SharedEdge;
 use chordal_brep::{Edge, MeshIssue};
 use chordal_chart::{EdgeSamples, FaceSurface, TrimmedFace};
 use chordal_nurbs::{Curve, work};
 use rayon::prelude::*;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rounds in which chords are halved; later ones are quartered. Where a surface turns within almost no
@@ -44,6 +46,9 @@ pub(crate) struct Pass<'j, 'a> {
 /// What a face is before its edges are fine enough for it.
 const UNFINISHED: MeshIssue = MeshIssue::EdgesTooCoarse { rounds: MAX_ROUNDS };
 
+/// What a face gave in one round: a mesh or a failure, or chords that must become finer first.
+type Answer = Result<Meshed, Vec<(u32, u32)>>;
+
 /// An edge that has no samples, and why.
 pub(crate) type EdgeFault = (u32, MeshIssue);
 
@@ -63,6 +68,8 @@ pub(crate) struct PassResult {
     pub edges_given_up: usize,
     pub edge_faults: Vec<EdgeFault>,
     pub faces: Vec<Meshed>,
+    /// Of every face, what it was meshed by, where that is all that it depends on.
+    pub questions: Vec<Option<Question>>,
     /// The number of rounds in which faces requested finer edges.
     pub rounds: usize,
 }
@@ -103,7 +110,11 @@ impl<'j, 'a> Pass<'j, 'a> {
     /// Samples all edges; those that a panic spoiled have no samples.
     pub fn sample_edges(&self) -> SampledEdges {
         let all = (0..self.job.part.edges.len()).into_par_iter();
-        let sampled: Vec<Result<SampledEdge, MeshIssue>> = all.map(|i| self.sample(i, 1)).collect();
+        let mut known = self.job.remembered(|memo| std::mem::take(&mut memo.edges)).unwrap_or_default();
+        known.resize(self.job.part.edges.len(), None);
+        let sampled: Vec<Result<SampledEdge, MeshIssue>> =
+            all.zip(known).map(|(i, known)| known.map_or_else(|| self.sample(i, 1), Ok)).collect();
+        self.job.remembered(|memo| memo.edges = sampled.iter().map(|edge| edge.clone().ok()).collect());
         let mut faults = Vec::new();
         let mut edges = Vec::with_capacity(sampled.len());
         for (i, result) in sampled.into_iter().enumerate() {
@@ -173,7 +184,7 @@ impl<'j, 'a> Pass<'j, 'a> {
         edges: &[EdgeSamples],
         round: usize,
         doubled: &[SharedEdge],
-    ) -> Result<Meshed, Vec<(u32, u32)>> {
+    ) -> Answer {
         let job = self.job;
         let surface = match job.surface(face) {
             Ok(surface) => surface,
@@ -209,7 +220,7 @@ impl<'j, 'a> Pass<'j, 'a> {
         round: usize,
         doubled: &[SharedEdge],
         budget: Budget,
-    ) -> Result<Meshed, Vec<(u32, u32)>> {
+    ) -> Answer {
         let job = self.job;
         let context = FaceContext {
             trimmed: TrimmedFace {
@@ -265,7 +276,15 @@ impl<'j, 'a> Pass<'j, 'a> {
             edges.into_iter().map(|edge| (edge.samples, edge.fewest)).unzip();
         let n = self.job.part.faces.len();
         let faces = vec![Err(UNFINISHED); n];
-        let mut result = PassResult { edges, fewest, edges_given_up, edge_faults, faces, rounds: 0 };
+        let mut result = PassResult {
+            edges,
+            fewest,
+            edges_given_up,
+            edge_faults,
+            faces,
+            questions: vec![None; n],
+            rounds: 0,
+        };
         self.run_rounds(&mut result, (0..n).collect(), done);
         result
     }
@@ -277,17 +296,22 @@ impl<'j, 'a> Pass<'j, 'a> {
         let mut rounds = 0;
         for round in 0.. {
             let edges = &result.edges;
-            let mesh = |&face: &usize| {
-                let result = self.mesh_one(face, edges, round, &[]);
+            let questions: Vec<Option<Question>> =
+                dirty.iter().map(|&face| self.question(face, edges, round)).collect();
+            let recalled: Vec<_> = dirty.iter().zip(&questions).map(|(&f, q)| self.recalled(f, *q)).collect();
+            let mesh = |(&face, known): (&usize, Option<Answer>)| {
+                let result = known.unwrap_or_else(|| self.mesh_one(face, edges, round, &[]));
                 if round == 0 {
                     done(finished.fetch_add(1, Ordering::Relaxed) + 1);
                 }
                 result
             };
-            let results: Vec<Result<Meshed, Vec<(u32, u32)>>> = dirty.par_iter().map(mesh).collect();
+            let results: Vec<Answer> = dirty.par_iter().zip(recalled).map(mesh).collect();
             let mut requests = Vec::new();
-            for (&face, meshed) in dirty.iter().zip(results) {
+            for ((&face, question), meshed) in dirty.iter().zip(questions).zip(results) {
+                result.questions[face] = question.filter(|_| meshed.is_ok());
                 result.faces[face] = meshed.unwrap_or_else(|chords| {
+                    self.note_requests(face, question, &chords);
                     requests.extend(chords);
                     Err(UNFINISHED)
                 });
@@ -299,6 +323,38 @@ impl<'j, 'a> Pass<'j, 'a> {
             dirty = self.refine_edges(&mut result.edges, requests, round);
         }
         result.rounds += rounds;
+    }
+
+    /// What a face is meshed by in this round; none where that depends on more.
+    fn question(&self, face: usize, edges: &[EdgeSamples], round: usize) -> Option<Question> {
+        let job = self.job;
+        let is_default = job.options.fill_method.is_none() && job.options.edge_splitter.is_none();
+        if !is_default || !self.closer.is_empty() || job.memo.is_none() {
+            return None;
+        }
+        let mut hasher = DefaultHasher::new();
+        let known = &job.known;
+        (round, known.flat.contains(&face), known.touching.contains(&face)).hash(&mut hasher);
+        job.resolution.to_bits().hash(&mut hasher);
+        for edge in edges_of_face(job.part, face) {
+            let EdgeSamples { t, points, sag } = &edges[edge];
+            (edge, t.len()).hash(&mut hasher);
+            let coordinates = points.iter().flat_map(|p| p.to_array());
+            t.iter().chain(sag).copied().chain(coordinates).for_each(|x| hasher.write_u64(x.to_bits()));
+        }
+        Some(hasher.finish())
+    }
+
+    /// What the question gave in an earlier pass.
+    fn recalled(&self, face: usize, question: Option<Question>) -> Option<Answer> {
+        let known = self.job.remembered(|memo| memo.recall(face, question?)).flatten()?;
+        Some(known.map(Ok))
+    }
+
+    fn note_requests(&self, face: usize, question: Option<Question>, chords: &[(u32, u32)]) {
+        if let Some(question) = question {
+            self.job.remembered(|memo| memo.note_requests(face, question, chords));
+        }
     }
 
     /// Cuts the requested chords; returns the faces at their edges.
@@ -325,7 +381,7 @@ impl<'j, 'a> Pass<'j, 'a> {
 }
 
 /// The reason of a face that reached its limit, with the triangles that it had where that is known.
-fn out_of_time(result: &Result<Meshed, Vec<(u32, u32)>>) -> MeshIssue {
+fn out_of_time(result: &Answer) -> MeshIssue {
     match result {
         Ok(Err(issue @ MeshIssue::OutOfTime { .. })) => issue.clone(),
         Ok(Ok(meshed)) => MeshIssue::OutOfTime { elements: meshed.triangles.len() },

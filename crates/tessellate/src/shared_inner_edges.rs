@@ -50,6 +50,7 @@ pub(crate) fn separate(pass: &Pass<'_, '_>, result: &mut PassResult) {
                 && !is_unproven(&new, &job.limits, job.options.bound)
             {
                 result.faces[face as usize] = Ok(new);
+                result.questions[face as usize] = None;
             }
         }
     }

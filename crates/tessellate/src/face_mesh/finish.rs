@@ -80,6 +80,7 @@ impl FaceMesh<'_, '_> {
             triangles,
             inner,
             crossed: false,
+            turned: false,
             quads,
             doubtful: self.chart.reversed,
             private,
