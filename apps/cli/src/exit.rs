@@ -1,7 +1,6 @@
 //! Exit codes, and the two channels: results on standard output, messages on standard error.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
-use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Standard output could not be written.
@@ -20,13 +19,13 @@ pub enum Exit {
 
 impl Exit {
     /// The code for the system; results that did not reach standard output are a problem.
-    pub fn code(self) -> ExitCode {
+    pub fn code(self) -> u8 {
         let are_lost = RESULTS_ARE_LOST.load(Ordering::Relaxed);
-        ExitCode::from(match if are_lost { self.max(Exit::Problems) } else { self } {
+        match if are_lost { self.max(Exit::Problems) } else { self } {
             Exit::Clean => 0,
             Exit::Problems => 1,
             Exit::Nothing => 2,
-        })
+        }
     }
 }
 

@@ -70,6 +70,12 @@ pub enum RequestError {
         /// Why.
         source: WriteError,
     },
+    /// The mesh has more vertices than 32 bits can count.
+    #[error("the mesh has {count} vertices, more than 32 bits can count")]
+    TooManyVertices {
+        /// How many vertices there are so far.
+        count: usize,
+    },
     /// The model has no such face.
     #[error("the model has no face {face}")]
     UnknownFace {
@@ -134,6 +140,20 @@ impl From<ReadError> for FileError {
 }
 
 impl Error {
+    /// The entity and line of the file that the error is about, where they are known.
+    pub fn source_place(&self) -> Source {
+        match self {
+            Error::File { reason: FileError::Read(error), .. } => {
+                error.issue().map_or_else(Source::default, |issue| issue.source)
+            }
+            Error::File { reason: FileError::CoordinateOutOfRange { entity, .. }, .. } => *entity,
+            Error::File { reason: FileError::NothingMeshed { problems, .. }, .. } => {
+                problems.first().map_or_else(Source::default, Problem::source)
+            }
+            _ => Source::default(),
+        }
+    }
+
     pub(crate) fn file(name: &str, reason: FileError) -> Self {
         Error::File { name: name.to_owned(), reason }
     }

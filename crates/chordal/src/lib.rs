@@ -50,6 +50,7 @@ struct Readme;
 mod account;
 mod analytic;
 mod area;
+mod arrays;
 mod auditing;
 mod bug;
 #[cfg(feature = "methods")]
@@ -85,6 +86,7 @@ pub mod stages;
 mod tight_box;
 mod work_limits;
 
+pub use arrays::{Arrays, NO_FACE};
 pub use error::{Error, FileError, RequestError};
 #[cfg(feature = "gpu")]
 pub use gpu_evaluator::GpuEvaluator;

@@ -131,9 +131,8 @@ impl Meshed {
 
     /// Every triangle as placed: by placement, then by face.
     pub fn triangles(&self) -> impl Iterator<Item = Triangle> + '_ {
-        self.placements.iter().enumerate().flat_map(move |(index, placed)| {
-            let part = &self.scene.parts[placed.part];
-            let place = Place::new(placed, index);
+        self.places().flat_map(move |place| {
+            let part = &self.scene.parts[place.part.index()];
             let exact = part.mesh.faces.iter().flat_map(move |face| {
                 let positions = &part.mesh.positions;
                 face.triangles.iter().map(move |&triangle| place.triangle(positions, face, triangle))
@@ -145,6 +144,11 @@ impl Meshed {
             });
             exact.chain(copied)
         })
+    }
+
+    /// Every placement, with what it takes to place triangles.
+    pub(crate) fn places(&self) -> impl Iterator<Item = Place> + '_ {
+        self.placements.iter().enumerate().map(|(index, placed)| Place::new(placed, index))
     }
 
     /// Every edge of the model that a face uses, as placed.
@@ -289,12 +293,12 @@ impl<'a> MeshedFace<'a> {
     }
 }
 
-/// One placement of a part.
+/// One placement of a part, with what it takes to place triangles.
 #[derive(Clone, Copy, Debug)]
-struct Place {
-    part: PartId,
-    placement: usize,
-    world: DAffine3,
+pub(crate) struct Place {
+    pub part: PartId,
+    pub placement: usize,
+    pub world: DAffine3,
     /// Takes outward normals to outward normals, up to their length.
     normals: DMat3,
     mirrored: bool,
@@ -342,7 +346,7 @@ impl Place {
         }
     }
 
-    fn winding(&self, [a, b, c]: [u32; 3]) -> [u32; 3] {
+    pub fn winding(&self, [a, b, c]: [u32; 3]) -> [u32; 3] {
         if self.mirrored { [a, c, b] } else { [a, b, c] }
     }
 }

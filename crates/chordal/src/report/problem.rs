@@ -1,7 +1,7 @@
 //! One problem of a report: an issue of any stage as data.
 
 use super::entity_name;
-use chordal_brep::{Issue, IssueKind, Severity};
+use chordal_brep::{Issue, IssueKind, Severity, Source};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -65,6 +65,12 @@ impl Problem {
         }
     }
 
+    /// The entity and line as numbers; 0 where the format has none.
+    pub fn source(&self) -> Source {
+        let number = |entity: &String| entity.trim_start_matches('#').parse().ok();
+        Source { entity: self.entity.as_ref().and_then(number).unwrap_or(0), line: self.line.unwrap_or(0) }
+    }
+
     /// `#42 (line 48)`.
     pub(crate) fn place(&self) -> Option<String> {
         match (&self.entity, self.line) {
@@ -100,7 +106,7 @@ fn values(kind: &IssueKind) -> Map<String, Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use chordal_brep::{ResultIssue, Source};
+    use chordal_brep::ResultIssue;
 
     #[test]
     fn an_issue_keeps_its_code_place_and_values() {
