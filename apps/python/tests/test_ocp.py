@@ -24,14 +24,15 @@ def drilled_block() -> Any:
 
 def faces(shape: Any) -> list[Any]:
     from OCP.TopAbs import TopAbs_ShapeEnum
-    from OCP.TopExp import TopExp
-    from OCP.TopoDS import TopoDS
-    from OCP.TopTools import TopTools_IndexedMapOfShape
+    from OCP.TopExp import TopExp_Explorer
 
-    found = TopTools_IndexedMapOfShape()
-    TopExp.MapShapes_s(shape, TopAbs_ShapeEnum.TopAbs_FACE, found)
-    cast = getattr(TopoDS, "Face_s", None) or TopoDS.Face
-    return [cast(found.FindKey(i)) for i in range(1, found.Extent() + 1)]
+    found: list[Any] = []
+    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE)
+    while explorer.More():
+        if not any(explorer.Current().IsSame(other) for other in found):
+            found.append(explorer.Current())
+        explorer.Next()
+    return found
 
 
 def surface_properties(shape: Any) -> Any:

@@ -19,7 +19,7 @@ const FACE_TIMEOUT: Duration = Duration::from_secs(4);
 const METHOD_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A gigabyte is what small machines have to spare.
-const MEMORY: u64 = 1 << 30;
+const MEMORY: u64 = 1_000_000_000;
 
 /// Memory that a triangle takes while its face is meshed, with its vertices and neighbours.
 const BYTES_PER_TRIANGLE: u64 = 250;

@@ -7,6 +7,7 @@ import logging
 import math
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypedDict, Union
 
 from . import _native
@@ -75,14 +76,15 @@ def read(
     """Reads a CAD file: a path, its bytes, or an open binary file.
 
     The format is recognised by content unless `format` names it: `step`, `iges`, `brep`, `3dm`, `inventor`,
-    `x3d`, `obj`, `json`. `name` names bytes in messages.
+    `x3d`, `obj`, `json`. `name` names bytes in messages,
+    and the model where the file gives it no name.
     """
     if isinstance(source, (str, os.PathLike)):
         return _native.read(os.fspath(source), None, "", format, winding, progress)
     if isinstance(source, (bytes, bytearray, memoryview)):
         content, title = bytes(source), "model"
     elif hasattr(source, "read"):
-        content, title = source.read(), str(getattr(source, "name", "model"))
+        content, title = source.read(), Path(str(getattr(source, "name", "model"))).stem
         if not isinstance(content, bytes):
             raise RequestError("source: a file must be open in binary mode")
     else:

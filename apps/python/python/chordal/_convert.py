@@ -110,7 +110,7 @@ def _wrapped(shape: Any) -> Any:
 def from_ocp(shape: Any) -> Model:
     """The model of a shape of OCP, CadQuery or build123d, through its BREP form in memory.
 
-    The faces of the model are those of `TopExp.MapShapes` (`shape.Faces()` in CadQuery), in the same order.
+    The faces of the model are in the order of `TopExp_Explorer` (`shape.Faces()` in CadQuery), each once.
     """
     tools = _package("OCP.BRepTools", "cadquery-ocp", "from_ocp").BRepTools
     text = io.BytesIO()
