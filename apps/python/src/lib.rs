@@ -10,6 +10,7 @@ mod model;
 mod numbers;
 mod part;
 mod pool;
+mod shared;
 mod surface;
 
 use pyo3::prelude::*;

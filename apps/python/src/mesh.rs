@@ -4,8 +4,8 @@ use crate::arguments::{output_format, write_options};
 use crate::errors::of_input;
 use crate::grids;
 use crate::job::Caller;
-use crate::model::{Model, Shared};
 use crate::numbers::{array, points};
+use crate::shared::Shared;
 use chordal::write::WriteSummary;
 use chordal::{Arrays, Cancel, Error, Meshed, OutputFormat, RequestError};
 use numpy::{Element, PyArrayDyn};
@@ -23,6 +23,7 @@ type Doubles = Py<PyArrayDyn<f64>>;
 /// The mesh of a model, audited, with its report.
 #[pyclass(frozen, module = "chordal", weakref)]
 pub struct Mesh {
+    model: Py<PyAny>,
     shared: Arc<Shared>,
     pub meshed: Arc<Meshed>,
     vertices: Doubles,
@@ -36,11 +37,18 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    pub fn new(py: Python<'_>, shared: Arc<Shared>, meshed: Arc<Meshed>, arrays: Arrays) -> PyResult<Self> {
+    pub fn new(
+        model: &Bound<'_, PyAny>,
+        shared: Arc<Shared>,
+        meshed: Arc<Meshed>,
+        arrays: Arrays,
+    ) -> PyResult<Self> {
+        let py = model.py();
         let count = arrays.triangles.len();
         // Faces that are none, the largest number, are -1.
         let faces = arrays.faces.into_iter().map(|face| face as i32).collect();
         Ok(Self {
+            model: model.clone().unbind(),
             shared,
             meshed,
             vertices: points(py, arrays.positions)?.unbind(),
@@ -75,8 +83,8 @@ fn shown<'py, T: Element>(py: Python<'py>, array: &Py<PyArrayDyn<T>>) -> Bound<'
 impl Mesh {
     /// The model that was meshed.
     #[getter]
-    fn model(&self) -> Model {
-        Model(self.shared.clone())
+    fn model(&self, py: Python<'_>) -> Py<PyAny> {
+        self.model.clone_ref(py)
     }
 
     /// The vertices in millimetres of the assembled model: float64 (n, 3), read-only.

@@ -5,6 +5,7 @@ use crate::job::Caller;
 use crate::mesh::Mesh;
 use crate::numbers::matrix;
 use crate::part::{Edge, Face, Part};
+use crate::shared::Shared;
 use chordal::{Cancel, Mesher, ReadOptions};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
@@ -13,29 +14,6 @@ use std::iter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// What every object of a model refers to.
-#[derive(Debug)]
-pub struct Shared {
-    pub model: chordal::Model,
-    /// The number of the first face of every part, and of the first edge; then the numbers of all.
-    pub first_faces: Vec<usize>,
-    pub first_edges: Vec<usize>,
-}
-
-impl Shared {
-    fn new(model: chordal::Model) -> Self {
-        let firsts = |count: fn(&chordal::brep::Part) -> usize| {
-            let mut firsts = vec![0];
-            firsts.extend(model.brep().parts.iter().scan(0, |sum, part| {
-                *sum += count(part);
-                Some(*sum)
-            }));
-            firsts
-        };
-        Self { first_faces: firsts(|p| p.faces.len()), first_edges: firsts(|p| p.edges.len()), model }
-    }
-}
 
 /// A CAD model: what a file holds, exactly.
 #[pyclass(frozen, module = "chordal")]
@@ -174,14 +152,14 @@ impl Model {
 
     /// Meshes the model; `options` as `chordal.Model.mesh` documents them.
     fn mesh_with(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         options: Option<&Bound<'_, PyDict>>,
         threads: Option<usize>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Mesh> {
+        let (py, shared) = (slf.py(), &slf.get().0);
         let options = mesh_options(options)?;
-        let model = self.0.model.clone();
+        let model = shared.model.clone();
         let cancel = Cancel::default();
         let caller = Caller { py, input: model.name().to_owned(), progress, threads };
         let flag = cancel.clone();
@@ -196,7 +174,7 @@ impl Model {
             let arrays = meshed.arrays()?;
             Ok((Arc::new(meshed), arrays))
         })?;
-        Mesh::new(py, self.0.clone(), meshed, arrays)
+        Mesh::new(slf.as_any(), shared.clone(), meshed, arrays)
     }
 
     fn __repr__(&self) -> String {

@@ -1,8 +1,8 @@
 //! Parts, faces and edges of a model.
 
 use crate::curve::Curve;
-use crate::model::Shared;
 use crate::numbers::points;
+use crate::shared::Shared;
 use crate::surface::Surface;
 use chordal::brep::{BodyKind, FaceGeometry, Loop, Source};
 use numpy::PyArrayDyn;

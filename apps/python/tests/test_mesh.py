@@ -14,6 +14,7 @@ from conftest import command_line
 
 def test_the_arrays(bracket_mesh: chordal.Mesh) -> None:
     mesh = bracket_mesh
+    assert mesh.model is mesh.model and mesh.model.mesh(1).model is mesh.model
     count = mesh.report["triangles"]
     shapes = {
         "triangles": ((count, 3), np.uint32),
