@@ -70,7 +70,10 @@ impl Report {
             return "error estimated, not proven".into();
         }
         let Some(error) = self.proven_error else {
-            return format!("error not proven for any of {}", count(meshed, "face", "faces"));
+            return match meshed {
+                1 => "error of the face not proven".into(),
+                n => format!("error not proven for any of {n} faces"),
+            };
         };
         let within = length_mm(error);
         let unproven = meshed - self.faces.proven;
