@@ -244,6 +244,12 @@ def three_sides() -> str:
     return g.text()
 
 
+@bad("wrong_counts", "strings of the global section and of a name whose counts reach into the next fields", exit="0",
+     phrase="counts 17 characters and has 11")
+def wrong_counts() -> str:
+    return looks().replace("11Hby hand.igs", "17Hby hand.igs").replace("10Htwo plates", "14Htwo plates")
+
+
 @bad("compressed", "the compressed form", exit="2", phrase="compressed")
 def compressed() -> str:
     return f"{'':<72}C{1:>7}\n" + make_plate()

@@ -146,6 +146,37 @@ def crescent(path: Path) -> None:
     write_solid(s, faces, path)
 
 
+@case("crescent_thin", "a crescent one micrometre thick between two circles whose chords are not alike", solids=1,
+      closed=True, faces=5)
+def crescent_thin(path: Path) -> None:
+    s = Step(path.stem)
+    up = lambda p, z: (p[0], p[1], z)
+    radius, shift, height, cut = 3.0, 0.001, 1.0, math.radians(110)
+    high, low = (shift / 2, math.sqrt(radius**2 - shift**2 / 4)), (shift / 2, -math.sqrt(radius**2 - shift**2 / 4))
+    middle = (shift + radius * math.cos(cut), radius * math.sin(cut))
+    arc = lambda x, p, q: [s.edge(up(p, z), up(q, z), s.circle((x, 0, z), Z, X, radius)) for z in (0, height)]
+    outer, upper, lower = arc(0, high, low), arc(shift, high, middle), arc(shift, middle, low)
+
+    def side(edge: list[str], start: Point, end: Point, x: float, sense: bool) -> str:
+        walls = [s.segment(up(end, 0), up(end, height)), s.segment(up(start, height), up(start, 0))]
+        uses = [(edge[0], True), walls[0], (edge[1], False), walls[1]]
+        if not sense:
+            uses = [(e, not forward) for e, forward in reversed(uses)]
+        surface = s.elementary("CYLINDRICAL_SURFACE", (x, 0, 0), Z, X, radius)
+        return s.face([s.bound(s.loop(uses), outer=True)], surface, sense)
+
+    top = s.loop([(outer[1], True), (lower[1], False), (upper[1], False)])
+    bottom = s.loop([(upper[0], True), (lower[0], True), (outer[0], False)])
+    faces = [
+        side(outer, high, low, 0, True),
+        side(upper, high, middle, shift, False),
+        side(lower, middle, low, shift, False),
+        s.face([s.bound(top, outer=True)], s.plane((0, 0, height), Z, X)),
+        s.face([s.bound(bottom, outer=True)], s.plane(O, DOWN, X)),
+    ]
+    write_solid(s, faces, path)
+
+
 def whole(path: Path, kind: str, values: tuple[float, ...], vertex: Point | None) -> None:
     """A closed surface as one face: no loop at all, or a vertex loop."""
     s = Step(path.stem)

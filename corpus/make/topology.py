@@ -58,6 +58,30 @@ def faceted_no_surface(path: Path) -> None:
     faceted(path, False)
 
 
+@case("faceted_one_plane", "FACETED_BREP: a tetrahedron whose faces all name the plane of one of them", solids=1, closed=True,
+      faces=4)
+def faceted_one_plane(path: Path) -> None:
+    s, ids = Step(path.stem), {}
+    a, b, c, d = (0, 0, 0), (10, 0, 0), (0, 10, 0), (0, 0, 10)
+    plane = s.plane(a, Z, X)
+    bounds = [s.bound(poly_loop(s, points, ids), outer=True) for points in ([a, c, b], [a, b, d], [a, d, c], [b, c, d])]
+    faces = [s.add(f"FACE_SURFACE('',{refs([bound])},{plane},.T.)") for bound in bounds]
+    shell = s.add(f"CLOSED_SHELL('',{refs(faces)})")
+    s.part([s.axes(), s.add(f"FACETED_BREP('',{shell})")], "FACETED_BREP_SHAPE_REPRESENTATION")
+    s.write(path)
+
+
+@case("compound_items", "solids within a COMPOUND_REPRESENTATION_ITEM within another one, as a list and as a set", solids=2,
+      closed=True, faces=12)
+def compound_items(path: Path) -> None:
+    s = Step(path.stem)
+    solids = [s.solid(block(s, (x, 0, 0), (x + 5, 5, 5))) for x in (0, 10)]
+    inner = s.add(f"COMPOUND_REPRESENTATION_ITEM('',SET_REPRESENTATION_ITEM(({solids[0]})))")
+    outer = s.add(f"COMPOUND_REPRESENTATION_ITEM('',LIST_REPRESENTATION_ITEM(({inner},{solids[1]})))")
+    s.part([s.axes(), outer])
+    s.write(path)
+
+
 @case("two_shells", "one SHELL_BASED_SURFACE_MODEL of a closed and an open shell", solids=0, closed=False, faces=11)
 def two_shells(path: Path) -> None:
     s = Step(path.stem)

@@ -154,6 +154,17 @@ issues! {
     /// Commands and scripts of a file are never run.
     ProgramIgnored { what: &'static str = "What holds them." } => "program-ignored",
         "{what} ignored: programs in a file are never run";
+    /// The count of a string is not its length; the delimiters are used.
+    StringCount {
+        field: usize = "The number of the parameter, from 1.",
+        owner: &'static str = "Whose parameter it is.",
+        counted: usize = "The count in the file.",
+        length: usize = "The characters up to the delimiter.",
+    } => "string-count",
+        "parameter {field} {owner} counts {counted} characters and has {length}; read up to its delimiter";
+    /// The parameters of a global section are not of the kinds that they must be.
+    GlobalSectionShifted => "global-section-shifted",
+        "the parameters of the global section are of wrong kinds; unit and accuracy may be wrong";
     /// Text of the file is not valid.
     TextBroken { reason: String = "What the decoder reports." } => "text-broken", "{reason}";
 
@@ -391,6 +402,9 @@ issues! {
     /// A curve in parameter space cannot be used.
     PcurveRecomputed { cause: Box<ReadIssue> = "Why." } => "pcurve-recomputed",
         "trim curve ignored and recomputed from the edge: {cause}";
+    /// The corners of a polygon are not on the plane of its face.
+    PlaneContradicted { off: Percent = "Their largest distance, as a share of the face's extent." } =>
+        "plane-contradicted", "the corners are off the plane of the face by {off} of its extent; their own is used";
     /// An arc of an indexed polyline.
     ArcAsChords => "arc-as-chords", "arc of an indexed polyline replaced by its chords";
     /// A ruled surface is ruled by arc length.

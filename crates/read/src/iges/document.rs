@@ -3,6 +3,7 @@
 use super::global::{Global, padded};
 use super::lines::{Line, Sections, number};
 use super::parameters::{Record, Value, record};
+use super::resynchronise::resynchronised;
 use crate::assemble::Notes;
 pub(crate) use crate::assemble::{Bad, Res};
 use crate::encoding::Encoding;
@@ -148,6 +149,7 @@ impl<'a> Doc<'a> {
         let entry = &self.entries[ix];
         let first = self.parameter_position(entry.parameter_line);
         let Some(first) = first else { return Err(self.bad(ix, ReadIssue::NoAttributes)) };
+        let delimiters = [self.global.parameter_delimiter, self.global.record_delimiter];
         let mut text: Vec<u8> = Vec::new();
         let mut taken = 0;
         let mut found = Record::default();
@@ -159,15 +161,20 @@ impl<'a> Doc<'a> {
             }
             text.extend(padded(&line.text[..line.text.len().min(DATA)]).take(DATA));
             // Column 65 should be blank, but some writers let the last delimiter stand there.
-            let delimiters = [self.global.parameter_delimiter, self.global.record_delimiter];
             text.extend(line.text.get(DATA).filter(|column| delimiters.contains(column)));
             taken += 1;
             if taken as u64 >= entry.parameter_count {
-                found = record(&text, self.global.parameter_delimiter, self.global.record_delimiter);
+                found = record(&text, delimiters[0], delimiters[1]);
             }
         }
         if !found.ended {
-            found = record(&text, self.global.parameter_delimiter, self.global.record_delimiter);
+            found = record(&text, delimiters[0], delimiters[1]);
+        }
+        if found.contradicted
+            && let Some(better) = resynchronised(&text, delimiters, &[])
+        {
+            better.wrong_counts.iter().for_each(|wrong| self.warn(ix, wrong.issue("of the entity")));
+            found = better;
         }
         let left = self.budget.get().checked_sub(text.len() as u64 + 1);
         self.budget.set(left.ok_or_else(|| self.bad(ix, ReadIssue::TooManyReferences))?);

@@ -2,6 +2,7 @@
 
 use super::lines::Line;
 use super::parameters::{Record, Value, record};
+use super::resynchronise::{Kind, contradicts, resynchronised};
 use crate::encoding::Encoding;
 use chordal_brep::{ReadIssue, Real};
 
@@ -35,13 +36,25 @@ const UNITS: [(u8, f64, &str, &[&str]); 10] = [
     (11, 2.54e-5, "microinch", &["UIN"]),
 ];
 
+/// What the fields of the section hold.
+const KINDS: [Kind; 26] = {
+    let mut kinds = [Kind::Number; 26];
+    let strings = [1, 2, 3, 4, 5, 6, 12, 15, 18, 21, 22, 25, 26];
+    let mut i = 0;
+    while i < strings.len() {
+        kinds[strings[i] - 1] = Kind::Text;
+        i += 1;
+    }
+    kinds
+};
+
 impl Global {
     pub(crate) fn read(lines: &[Line<'_>], encoding: Encoding) -> Self {
         let text: Vec<u8> = lines.iter().flat_map(|line| padded(line.text)).collect();
         let [parameter, end] = delimiters(&text);
         // The delimiters are parameters themselves: `1H,` and `1H;`, or left out.
-        let Record { values, ended } = record(&text, parameter, end);
         let mut issues = Vec::new();
+        let Record { values, ended, .. } = section(&text, [parameter, end], &mut issues);
         if !ended {
             issues.push(ReadIssue::SectionTruncated {
                 section: "G (global)",
@@ -88,6 +101,21 @@ impl Global {
             _ => "5.3 or later",
         }
     }
+}
+
+/// The fields of the section. Where they contradict what they must be, as behind a string whose count is
+/// wrong, the delimiters decide.
+fn section(text: &[u8], delimiters: [u8; 2], issues: &mut Vec<ReadIssue>) -> Record {
+    let counted = record(text, delimiters[0], delimiters[1]);
+    if !counted.contradicted && !contradicts(&counted, &KINDS) {
+        return counted;
+    }
+    let Some(found) = resynchronised(text, delimiters, &KINDS) else {
+        issues.push(ReadIssue::GlobalSectionShifted);
+        return counted;
+    };
+    issues.extend(found.wrong_counts.iter().map(|wrong| wrong.issue("of the global section")));
+    found
 }
 
 /// Lines as long as the section's columns: blanks at their ends may have been cut, and strings run on over
@@ -148,6 +176,21 @@ mod tests {
         assert_eq!((default.length_mm, default.issues.len()), (25.4, 0));
         let named = read(&format!("1H,,1H;,4Hpart,1Hx,1Hy,1Hz,32,38,6,38,15,,1.,3,2HCM,1,0.1,{tail}"));
         assert_eq!(named.length_mm, 10.0);
+    }
+
+    #[test]
+    fn a_wrong_count_does_not_shift_the_unit() {
+        let tail = "15H20090315.221637,1e-5,2.5,,,11;";
+        // Into the next field but one, to a delimiter, and beyond the whole section.
+        for product in ["11Hpart", "8Hpart", "900Hpart", "2Hpart"] {
+            let found = read(&format!(",,{product},1Hx,1Hy,1Hz,32,38,6,38,15,,2.,2,2HMM,1,0.1,{tail}"));
+            let codes: Vec<&str> = found.issues.iter().map(ReadIssue::code).collect();
+            assert_eq!(codes, ["string-count"], "{product}");
+            assert_eq!((found.product.as_str(), found.length_mm, found.unit.as_str()), ("part", 0.5, "mm"));
+        }
+        let hopeless = read(&format!(",,4Hpart,1Hx,1Hy,1Hz,x,38,6,38,15,,2.,2,2HMM,1,0.1,{tail}"));
+        let codes: Vec<&str> = hopeless.issues.iter().map(ReadIssue::code).collect();
+        assert_eq!((codes, hopeless.length_mm), (vec!["global-section-shifted"], 0.5));
     }
 
     #[test]

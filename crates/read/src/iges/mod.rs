@@ -20,6 +20,7 @@ mod loops;
 mod matrix;
 mod own_border;
 mod parameters;
+mod resynchronise;
 mod ruled;
 mod simpler;
 mod splines;

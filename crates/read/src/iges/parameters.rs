@@ -1,6 +1,7 @@
 //! Free-form parameters: numbers and strings between delimiters.
 
 use crate::number;
+use chordal_brep::ReadIssue;
 
 /// One parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +19,25 @@ pub(crate) enum Value {
 pub(crate) struct Record {
     pub values: Vec<Value>,
     pub ended: bool,
+    /// The count of a string leads to a place where no field can end.
+    pub contradicted: bool,
+    /// Counts that were not used.
+    pub wrong_counts: Vec<WrongCount>,
+}
+
+/// A string whose count is not its length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct WrongCount {
+    /// The number of the field, from 1.
+    pub field: usize,
+    pub count: usize,
+    pub length: usize,
+}
+
+impl WrongCount {
+    pub(crate) fn issue(self, owner: &'static str) -> ReadIssue {
+        ReadIssue::StringCount { field: self.field, owner, counted: self.count, length: self.length }
+    }
 }
 
 /// Splits text at the delimiters, up to the end of the record. Strings (`5Hhello`) may hold delimiters.
@@ -32,6 +52,8 @@ pub(crate) fn record(text: &[u8], parameter: u8, end: u8) -> Record {
         };
         let rest = &text[at + length..];
         let stop = rest.iter().position(|&b| b == parameter || b == end).unwrap_or(rest.len());
+        let nothing_behind = stop < rest.len() && rest[..stop].trim_ascii().is_empty();
+        found.contradicted |= length > 0 && !nothing_behind;
         found.values.push(if length > 0 { value } else { plain(&rest[..stop]) });
         at += length + stop;
         match text.get(at) {
@@ -47,17 +69,22 @@ pub(crate) fn record(text: &[u8], parameter: u8, end: u8) -> Record {
 
 /// A string with its count, and how many bytes it takes.
 fn string(text: &[u8]) -> Option<(&[u8], usize)> {
-    let digits = text.iter().take_while(|b| b.is_ascii_digit()).count();
-    if digits == 0 || digits > 6 || !matches!(text.get(digits), Some(b'H' | b'h')) {
-        return None;
-    }
-    let count: usize = std::str::from_utf8(&text[..digits]).ok()?.parse().ok()?;
-    let start = digits + 1;
+    let (count, start) = counted(text)?;
     let end = (start + count).min(text.len());
     Some((&text[start..end], end))
 }
 
-fn plain(text: &[u8]) -> Value {
+/// The count of a string, and how many bytes stand before its text.
+pub(crate) fn counted(text: &[u8]) -> Option<(usize, usize)> {
+    let digits = text.iter().take_while(|b| b.is_ascii_digit()).count();
+    if digits == 0 || digits > 6 || !matches!(text.get(digits), Some(b'H' | b'h')) {
+        return None;
+    }
+    let count = std::str::from_utf8(&text[..digits]).ok()?.parse().ok()?;
+    Some((count, digits + 1))
+}
+
+pub(crate) fn plain(text: &[u8]) -> Value {
     let text = text.trim_ascii();
     if text.is_empty() {
         return Value::Omitted;
@@ -84,7 +111,7 @@ mod tests {
         let found = record(b"3H,;x, 1.5D0,,-3; 7", b',', b';');
         let expected =
             [Value::Text(b",;x".to_vec()), Value::Number(1.5), Value::Omitted, Value::Number(-3.0)];
-        assert_eq!(found, Record { values: expected.to_vec(), ended: true });
+        assert_eq!(found, Record { values: expected.to_vec(), ended: true, ..Record::default() });
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Shells, bodies and the other items of a representation.
 
+use super::args::Args;
 use super::builder::Builder;
 use super::document::{Ix, Res};
 use super::faces::FaceUse;
@@ -58,6 +59,7 @@ impl Builder<'_> {
                 self.face_set(ix, String::new(), vec![face]);
             }
             Kw::GeometricSet | Kw::GeometricCurveSet => self.geometric_set(ix, args, depth),
+            Kw::CompoundRepresentationItem => self.compound(ix, args, depth),
             Kw::Complex => self.complex_item(ix, depth)?,
             kw if is_surface(kw) => self.loose_surface(ix),
             kw if is_curve(kw) => self.loose(ix, LooseKind::Wire),
@@ -115,18 +117,35 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn geometric_set(&mut self, ix: Ix, mut args: super::args::Args<'_>, depth: u32) {
+    fn geometric_set(&mut self, ix: Ix, mut args: Args<'_>, depth: u32) {
         args.skip(1);
         for element in args.references_or_warn() {
             self.item_at(element, depth + 1);
         }
-        // The set's own colour and layer belong to what it holds.
-        let (color, layer) = (self.color(ix), self.layer(ix));
-        if color.is_some() || layer.is_some() {
-            for body in self.build.part.bodies.iter_mut().filter(|body| body.kind == BodyKind::FaceSet) {
-                body.color = body.color.or(color);
-                body.layer = body.layer.take().or_else(|| layer.clone());
+        self.hand_down(ix, 0, |body| body.kind == BodyKind::FaceSet);
+    }
+
+    /// COMPOUND_REPRESENTATION_ITEM: a list or set of items, as a value of its select type.
+    fn compound(&mut self, ix: Ix, mut args: Args<'_>, depth: u32) {
+        args.skip(1);
+        let before = self.build.part.bodies.len();
+        if let Some((_, mut elements)) = args.typed() {
+            for element in elements.references_or_warn() {
+                self.item_at(element, depth + 1);
             }
+        }
+        self.hand_down(ix, before, |_| true);
+    }
+
+    /// The own colour and layer of a set belong to what it holds.
+    fn hand_down(&mut self, set: Ix, first_body: usize, belongs: impl Fn(&Body) -> bool) {
+        let (color, layer) = (self.color(set), self.layer(set));
+        if color.is_none() && layer.is_none() {
+            return;
+        }
+        for body in self.build.part.bodies[first_body..].iter_mut().filter(|body| belongs(body)) {
+            body.color = body.color.or(color);
+            body.layer = body.layer.take().or_else(|| layer.clone());
         }
     }
 
@@ -338,6 +357,11 @@ fn is_text_or_view(name: &str) -> bool {
         "MEASURE",
         "ANNOTATION",
         "DRAUGHTING",
+        "CALLOUT",
+        "LEADER_CURVE",
+        "DIMENSION_CURVE",
+        "PROJECTION_CURVE",
+        "TERMINATOR_SYMBOL",
         "CAMERA",
         "DESCRIPTIVE",
         "TEXT",

@@ -3,7 +3,7 @@
 use super::builder::{Builder, KnownEdge};
 use super::document::{Ix, Res};
 use super::keyword::Kw;
-use chordal_brep::{Coedge, Color, Face, FaceGeometry, FaceId, Loop, Pcurve, ReadIssue, VertexId};
+use chordal_brep::{Coedge, Color, Face, FaceGeometry, FaceId, Loop, Pcurve, Percent, ReadIssue, VertexId};
 use chordal_nurbs::{DVec3, Frame, Surface};
 use std::sync::Arc;
 
@@ -31,6 +31,10 @@ struct FaceData {
     geometry: Option<Res<Ix>>,
     same_sense: bool,
 }
+
+/// Corners farther off the plane of their face than this share of the face's extent contradict it: far more
+/// than the rounding of coordinates, and so little that the plane of the corners is hardly another one.
+const PLANE_CONTRADICTED: f64 = 1e-2;
 
 /// Faces that refer to faces, deeper than this, refer in a circle.
 const MAX_FACE_DEPTH: u32 = 8;
@@ -94,7 +98,42 @@ impl Builder<'_> {
             trimmed.same_sense = trimmed.same_sense == data.same_sense;
             return Ok(trimmed);
         }
+        let (surface, same_sense) = self.plane_of_corners(ix, surface, same_sense, &loops);
         Ok(Trimmed { surface, same_sense, loops })
+    }
+
+    /// The plane of a face whose loops are all polygons: that of the corners where they are not on the one
+    /// that the file gives. Another surface is returned as it is.
+    fn plane_of_corners(
+        &self,
+        ix: Ix,
+        surface: Arc<Surface>,
+        same_sense: bool,
+        loops: &[Loop],
+    ) -> (Arc<Surface>, bool) {
+        let Surface::Plane { frame } = &*surface else { return (surface, same_sense) };
+        let Some(polygons) = self.polygons(loops) else { return (surface, same_sense) };
+        let Some(own) = largest_plane(&polygons) else { return (surface, same_sense) };
+        let points = || polygons.iter().flatten();
+        let off = |frame: &Frame| points().map(|p| frame.local(*p).z.abs()).fold(0.0, f64::max);
+        let extent = points().map(|p| p.distance(polygons[0][0])).fold(0.0, f64::max);
+        let (share, own_share) = (off(frame) / extent, off(&own) / extent);
+        if share <= PLANE_CONTRADICTED || own_share > 0.1 * share {
+            return (surface, same_sense);
+        }
+        self.doc.warn(ix, ReadIssue::PlaneContradicted { off: Percent::of(share) });
+        (Arc::new(Surface::Plane { frame: own }), true)
+    }
+
+    /// The corners of the loops, where all are polygons.
+    fn polygons(&self, loops: &[Loop]) -> Option<Vec<Vec<DVec3>>> {
+        let corners = |boundary: &Loop| match boundary {
+            Loop::Polygon { vertices, .. } => {
+                Some(vertices.iter().map(|&v| self.build.point_of(v)).collect::<Vec<DVec3>>())
+            }
+            _ => None,
+        };
+        loops.iter().map(corners).collect()
     }
 
     /// The surface under trimmed and oriented surfaces, and the face's sense against that.
@@ -258,24 +297,28 @@ impl Builder<'_> {
     /// A FACE without a surface: the plane of its polygons.
     fn polygon_face(&mut self, ix: Ix, bounds: &[Ix]) -> Res<Trimmed> {
         let loops = bounds.iter().map(|&bound| self.bound(bound, ix)).collect::<Res<Vec<_>>>()?;
-        let mut best: Option<(f64, Frame)> = None;
-        for boundary in &loops {
-            let Loop::Polygon { vertices, .. } = boundary else {
-                return Err(self.doc.bad(ix, ReadIssue::NoSurface));
-            };
-            let points: Vec<DVec3> = vertices.iter().map(|&v| self.build.point_of(v)).collect();
-            let area = newell(&points);
-            if best.is_none_or(|(largest, _)| area.length() > largest) {
-                best = Some((area.length(), Frame::new(points[0], area, points[1] - points[0])));
-            }
-        }
-        match best {
-            Some((area, frame)) if area > 0.0 => {
+        let Some(polygons) = self.polygons(&loops) else {
+            return Err(self.doc.bad(ix, ReadIssue::NoSurface));
+        };
+        match largest_plane(&polygons) {
+            Some(frame) => {
                 Ok(Trimmed { surface: Arc::new(Surface::Plane { frame }), same_sense: true, loops })
             }
-            _ => Err(self.doc.bad(ix, ReadIssue::NoArea)),
+            None => Err(self.doc.bad(ix, ReadIssue::NoArea)),
         }
     }
+}
+
+/// The plane of the polygon with the largest area, its normal that around which it runs.
+fn largest_plane(polygons: &[Vec<DVec3>]) -> Option<Frame> {
+    let mut best: Option<(f64, Frame)> = None;
+    for points in polygons {
+        let area = newell(points);
+        if best.is_none_or(|(largest, _)| area.length() > largest) {
+            best = Some((area.length(), Frame::new(points[0], area, points[1] - points[0])));
+        }
+    }
+    best.filter(|&(area, _)| area > 0.0).map(|(_, frame)| frame)
 }
 
 /// The vector area of a polygon (Newell's method).

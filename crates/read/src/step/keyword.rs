@@ -57,6 +57,7 @@ keywords! {
     CompositeCurve = "COMPOSITE_CURVE",
     CompositeCurveOnSurface = "COMPOSITE_CURVE_ON_SURFACE",
     CompositeCurveSegment = "COMPOSITE_CURVE_SEGMENT",
+    CompoundRepresentationItem = "COMPOUND_REPRESENTATION_ITEM",
     ConicalSurface = "CONICAL_SURFACE",
     ConnectedEdgeSet = "CONNECTED_EDGE_SET",
     ConnectedFaceSet = "CONNECTED_FACE_SET",
