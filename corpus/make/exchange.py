@@ -261,6 +261,24 @@ def model_circle(path: Path) -> None:
 # --- 3DM
 
 
+def blocks(r, archive) -> None:
+    """A block with a box, one with a sphere and that block in it, placed in the file as it is, moved, mirrored."""
+    point, plain = r.Point3d, r.ObjectAttributes()
+    box = lambda low, high: r.Brep.CreateFromBoundingBox(r.BoundingBox(point(*low), point(*high)))
+    define = lambda name, *shapes: archive.InstanceDefinitions.Add(
+        name, "", "", "", point(0, 0, 0), shapes, tuple(plain for _ in shapes)
+    )
+    place = lambda block, transform: r.InstanceReference(archive.InstanceDefinitions[block].Id, transform)
+    define("bolt", box((0, 0, 0), (2, 1, 1)))
+    sphere = r.Brep.CreateFromSphere(r.Sphere(point(0, 0, 4), 1))
+    define("pair", sphere, place(0, r.Transform.Translation(5, 0, 0)))
+    mirror = r.Transform.Mirror(r.Plane(point(0, -10, 0), r.Vector3d(0, 1, 0)))
+    turn = r.Transform.Rotation(math.pi / 2, r.Vector3d(0, 0, 1), point(0, 0, 0))
+    for block, transform in ((0, turn), (1, r.Transform.Translation(0, 20, 0)), (1, mirror)):
+        archive.Objects.AddInstanceObject(place(block, transform))
+    archive.Objects.AddBrep(box((-9, -9, -9), (-8, -8, -8)))
+
+
 def rhino(fill: Callable, version: int, path: Path) -> None:
     if path.exists():
         return
@@ -268,7 +286,7 @@ def rhino(fill: Callable, version: int, path: Path) -> None:
 
     archive = rhino3dm.File3dm()
     archive.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Centimeters
-    fill(rhino3dm, archive.Objects)
+    fill(rhino3dm, archive if fill is blocks else archive.Objects)
     archive.Write(str(path), version)
 
 
@@ -335,6 +353,16 @@ def rhino_extrusions(path: Path) -> None:
 @file("rhino_mesh_5.3dm", "a mesh in compressed buffers", faces=0, closed=True)
 def rhino_mesh_5(path: Path) -> None:
     rhino(mesh, 5, path)
+
+
+@file("rhino_blocks_5.3dm", "blocks, one within another, placed, moved and mirrored, in version 5", faces=26, closed=True)
+def rhino_blocks_5(path: Path) -> None:
+    rhino(blocks, 5, path)
+
+
+@file("rhino_blocks_8.3dm", "the same in version 8", faces=26, closed=True)
+def rhino_blocks_8(path: Path) -> None:
+    rhino(blocks, 8, path)
 
 
 @file("rhino_cut.3dm", "cut off in the middle of the second object", faces=1, exits="1", phrase="damaged")

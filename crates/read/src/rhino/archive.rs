@@ -1,21 +1,24 @@
 //! The tables of an archive, and its objects in their order.
 
+use super::blocks::{BlockPlacement, Content, Definition, Id, Placed, definitions, placed, reference};
 use super::bytes::{Bytes, Chunk, Res};
 use super::object::{Class, object};
 use super::surfaces::{RhinoSurface, surface};
 use super::tables::{Attributes, Layer, attributes, layers, units};
 use super::{MAGIC, brep, build, curves, extrusion, legacy, mesh};
-use crate::assemble::{Notes, PartBuilder};
+use crate::assemble::Notes;
 use crate::flat::LengthUnit;
 use crate::trimmed::{Look, Piece, Role, TrimLoop, add_body, add_faces, add_failed};
-use chordal_brep::{BodyKind, Issue, LooseItem, LooseKind, Part, ReadIssue, Source};
-use chordal_nurbs::DVec2;
+use chordal_brep::{BodyKind, Issue, LooseItem, LooseKind, ReadIssue, Source};
+use chordal_nurbs::{DAffine3, DVec2, DVec3};
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 const PROPERTIES: u32 = 0x1000_0014;
 const SETTINGS: u32 = 0x1000_0015;
 const LAYERS: u32 = 0x1000_0011;
 const OBJECTS: u32 = 0x1000_0013;
+const BLOCKS: u32 = 0x1000_0021;
 const OPENNURBS_VERSION: u32 = 0xa000_0026;
 const OBJECT_RECORD: u32 = 0x2000_8070;
 const OBJECT_ATTRIBUTES: u32 = 0x0200_8072;
@@ -23,9 +26,9 @@ const OBJECT_TYPE: u32 = 0x8200_0071;
 const END_OF_FILE: u32 = 0x0000_7fff;
 const END_OF_TABLE: u32 = 0xffff_ffff;
 
-/// A file's part, its unit, and what was noted on the way.
+/// A file's parts, its unit, and what was noted on the way.
 pub(super) struct Read {
-    pub part: Part,
+    pub placed: Placed,
     pub unit: LengthUnit,
     /// How many objects there are.
     pub objects: usize,
@@ -35,52 +38,64 @@ pub(super) struct Read {
 /// What is known of the archive so far.
 struct Reader<'a> {
     whole: &'a [u8],
-    builder: PartBuilder,
+    /// What the file itself holds, then what each block does.
+    contents: Vec<Content>,
+    /// The content that the object at hand belongs to.
+    at: usize,
+    definitions: Vec<Definition>,
+    /// The content that objects belong to which define blocks.
+    member_of: FxHashMap<Id, usize>,
     notes: Notes,
     unit: LengthUnit,
+    /// The absolute tolerance.
+    uncertainty: Option<f64>,
     layers: Vec<Layer>,
     opennurbs: u32,
     objects: usize,
-    /// Placements of blocks.
-    blocks: usize,
     subdivision_surfaces: usize,
     /// Texts, dimensions, lights, hatches.
     annotations: usize,
 }
 
-pub(super) fn read(whole: &[u8], version: u32) -> Read {
+pub(super) fn read(whole: &[u8], version: u32, name: &str) -> Read {
     let mut reader = Reader {
         whole,
-        builder: PartBuilder::default(),
+        contents: vec![Content::default()],
+        at: 0,
+        definitions: Vec::new(),
+        member_of: FxHashMap::default(),
         notes: Notes::default(),
         unit: LengthUnit::unstated(),
+        uncertainty: None,
         layers: Vec::new(),
         opennurbs: 0,
         objects: 0,
-        blocks: 0,
         subdivision_surfaces: 0,
         annotations: 0,
     };
     let file = Bytes::new(&whole[MAGIC.len() + 8..], version);
     if version == 1 {
-        reader.unit = legacy::read(file, whole, &mut reader.builder.part, &reader.notes);
+        reader.unit = legacy::read(file, whole, &mut reader.contents[0].builder.part, &reader.notes);
     } else {
         reader.tables(file);
     }
     reader.note_ignored();
-    let issues = reader.notes.take();
-    Read { part: reader.builder.finish(), unit: reader.unit, objects: reader.objects, issues }
+    let Reader { mut contents, definitions, unit, uncertainty, objects, notes, .. } = reader;
+    if uncertainty.is_some() {
+        contents.iter_mut().for_each(|content| content.builder.part.uncertainty = uncertainty);
+    }
+    let scale = DAffine3::from_scale(DVec3::splat(unit.millimetres));
+    let placed = placed(name, scale, &definitions, contents, &notes);
+    Read { placed, unit, objects, issues: notes.take() }
 }
 
 impl<'a> Reader<'a> {
     /// Names what is not read, one line for each kind.
     fn note_ignored(&self) {
-        let lost = [
-            (self.blocks, "placements of blocks"),
-            (self.subdivision_surfaces, "subdivision surfaces (SubD)"),
-        ];
-        for (objects, what) in lost.into_iter().filter(|(objects, _)| *objects > 0) {
-            self.notes.lose(Source::default(), ReadIssue::ObjectsIgnored { objects, what });
+        if self.subdivision_surfaces > 0 {
+            let what = "subdivision surfaces (SubD)";
+            let lost = ReadIssue::ObjectsIgnored { objects: self.subdivision_surfaces, what };
+            self.notes.lose(Source::default(), lost);
         }
         if self.annotations > 0 {
             let what = "annotations, hatches, lights and other objects without exact shape";
@@ -122,12 +137,22 @@ impl<'a> Reader<'a> {
             SETTINGS => {
                 if let Some((unit, tolerance)) = units(body) {
                     self.unit = unit;
-                    self.builder.part.uncertainty = Some(tolerance).filter(|t| t.is_finite() && *t > 0.0);
+                    self.uncertainty = Some(tolerance).filter(|t| t.is_finite() && *t > 0.0);
                 }
             }
             LAYERS => self.layers = layers(body),
+            BLOCKS => self.blocks(body),
             OBJECTS => self.objects(body),
             _ => {}
+        }
+    }
+
+    fn blocks(&mut self, table: Bytes<'a>) {
+        for definition in definitions(table) {
+            let content = self.contents.len();
+            self.contents.push(Content::default());
+            self.member_of.extend(definition.members.iter().map(|&id| (id, content)));
+            self.definitions.push(definition);
         }
     }
 
@@ -167,8 +192,11 @@ impl<'a> Reader<'a> {
             }
             record = ahead;
         }
-        if found.in_block {
-            return;
+        // A member of a definition that is not in the file is nowhere.
+        match self.member_of.get(&found.id) {
+            Some(&content) if found.in_block => self.at = content,
+            _ if found.in_block => return,
+            _ => self.at = 0,
         }
         let look = self.look(found, source);
         match shape {
@@ -194,8 +222,14 @@ impl<'a> Reader<'a> {
     fn shape(&mut self, class: Class, data: Bytes, look: &Look) {
         match class {
             Class::Brep => match brep::read(data, self.opennurbs) {
-                Ok(raw) => build::add(&mut self.builder, &raw, look, &self.notes, self.unit.millimetres),
-                Err(why) => _ = add_failed(&mut self.builder.part, why, look),
+                Ok(raw) => build::add(
+                    &mut self.contents[self.at].builder,
+                    &raw,
+                    look,
+                    &self.notes,
+                    self.unit.millimetres,
+                ),
+                Err(why) => _ = add_failed(&mut self.contents[self.at].builder.part, why, look),
             },
             class if class.is_surface() => self.bare_surface(surface(class, data), look),
             class if class.is_curve() => {
@@ -206,16 +240,26 @@ impl<'a> Reader<'a> {
                 self.loose(LooseKind::Wire, look);
             }
             Class::Point | Class::PointCloud => self.loose(LooseKind::Point, look),
-            Class::InstanceRef => self.blocks += 1,
+            Class::InstanceRef => match reference(data) {
+                Ok((definition, transform)) => {
+                    let (name, source) = (look.name.clone(), look.source);
+                    let placement = BlockPlacement { definition, transform, name, source };
+                    self.contents[self.at].placements.push(placement);
+                }
+                Err(why) => self.notes.lose(
+                    look.source,
+                    ReadIssue::Ignored { what: "placement of a block".into(), cause: why.boxed() },
+                ),
+            },
             Class::Mesh => match mesh::mesh(data, look) {
-                Ok(item) => self.builder.part.tessellated.push(item),
+                Ok(item) => self.contents[self.at].builder.part.tessellated.push(item),
                 Err(why) => self
                     .notes
                     .lose(look.source, ReadIssue::Ignored { what: "mesh".into(), cause: why.boxed() }),
             },
             Class::Extrusion => {
-                if let Err(why) = extrusion::add(&mut self.builder, data, look) {
-                    add_failed(&mut self.builder.part, why, look);
+                if let Err(why) = extrusion::add(&mut self.contents[self.at].builder, data, look) {
+                    add_failed(&mut self.contents[self.at].builder.part, why, look);
                 }
             }
             Class::SubD => self.subdivision_surfaces += 1,
@@ -225,7 +269,7 @@ impl<'a> Reader<'a> {
 
     /// A surface without trims is bounded by its own domain.
     fn bare_surface(&mut self, found: Res<RhinoSurface>, look: &Look) {
-        let part = &mut self.builder.part;
+        let part = &mut self.contents[self.at].builder.part;
         match found {
             Ok(found) => {
                 let surface = Arc::new(found.surface.clone());
@@ -239,7 +283,11 @@ impl<'a> Reader<'a> {
     }
 
     fn loose(&mut self, kind: LooseKind, look: &Look) {
-        self.builder.part.loose.push(LooseItem { kind, name: look.name.clone(), source: look.source });
+        self.contents[self.at].builder.part.loose.push(LooseItem {
+            kind,
+            name: look.name.clone(),
+            source: look.source,
+        });
     }
 
     /// The place in the file, in bytes.

@@ -2,10 +2,12 @@
 //!
 //! Bytes → [`bytes`] (chunks in chunks) → [`archive`] (tables; the objects with their attributes) →
 //! [`object`] (a class and its data) → [`brep`], [`surfaces`], [`curves`] (as the file holds them) →
-//! [`build`] (faces over shared edges); [`extrusion`] and [`mesh`] besides. Version 1 has objects of its own:
+//! [`build`] (faces over shared edges); [`extrusion`] and [`mesh`] besides; [`blocks`] are parts that are
+//! placed. Version 1 has objects of its own:
 //! [`legacy`]. The layout follows openNURBS, the library that defines the format.
 
 mod archive;
+mod blocks;
 mod brep;
 mod build;
 mod bytes;
@@ -17,8 +19,8 @@ mod object;
 mod surfaces;
 mod tables;
 
-use crate::flat;
 use crate::{Format, ReadError};
+use blocks::Placed;
 use chordal_brep::{Model, ReadIssue, Source};
 
 /// What every archive begins with; its version follows in eight characters.
@@ -38,11 +40,12 @@ pub(crate) fn read(bytes: &[u8], name: &str) -> Result<Model, ReadError> {
     if !matches!(version, 1..=4 | 5..=8 | 50..=89) {
         return Err(bad(ReadIssue::UnknownVersion { version }));
     }
-    let read = archive::read(bytes, version);
-    let part = read.part;
-    if part.faces.is_empty() && part.tessellated.is_empty() && part.loose.is_empty() {
+    let read = archive::read(bytes, version, name);
+    if read.placed.parts.is_empty() {
         return Err(ReadError::nothing(Format::Rhino, read.objects, read.issues.first().cloned()));
     }
     let schema = format!("Rhino 3DM version {}", if version >= 50 { version / 10 } else { version });
-    Ok(flat::model(name, schema, read.unit, part, read.issues))
+    let Placed { parts, nodes, roots } = read.placed;
+    let unit = read.unit.name;
+    Ok(Model { name: name.to_owned(), schema, unit, parts, nodes, roots, issues: read.issues })
 }

@@ -18,6 +18,7 @@ pub(super) struct Layer {
 /// What the attributes of an object say.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Attributes {
+    pub id: [u8; 16],
     pub name: String,
     pub layer: i32,
     pub color: Option<Color>,
@@ -117,6 +118,12 @@ pub(super) fn color(data: &mut Bytes) -> Res<Option<Color>> {
     Ok((!unset).then(|| Color([linear(r), linear(g), linear(b), opacity])))
 }
 
+/// A list of identifiers with its count.
+pub(super) fn uuid_list(data: &mut Bytes) -> Res<Vec<[u8; 16]>> {
+    let count = data.count(16)?;
+    (0..count).map(|_| data.uuid()).collect()
+}
+
 /// The source of an object's colour: 1 is the object itself.
 const FROM_OBJECT: u8 = 1;
 /// The mode of objects that define a block.
@@ -129,7 +136,7 @@ pub(super) fn attributes(mut data: Bytes) -> Res<Attributes> {
 }
 
 fn old_attributes(data: &mut Bytes) -> Res<Attributes> {
-    data.uuid()?;
+    let id = data.uuid()?;
     let layer = data.i32()?;
     data.i32()?;
     let color = color(data)?;
@@ -140,14 +147,14 @@ fn old_attributes(data: &mut Bytes) -> Res<Attributes> {
     data.take(2)?;
     let name = data.text()?;
     let color = color.filter(|_| source == FROM_OBJECT);
-    Ok(Attributes { name, layer, color, in_block: mode & 15 == BLOCK_MEMBER })
+    Ok(Attributes { id, name, layer, color, in_block: mode & 15 == BLOCK_MEMBER })
 }
 
 /// Since version 5 only what departs from the usual is written, each item behind its number, in increasing
 /// order.
 fn recent_attributes(data: &mut Bytes) -> Res<Attributes> {
-    data.uuid()?;
-    let mut found = Attributes { layer: data.i32()?, ..Attributes::default() };
+    let id = data.uuid()?;
+    let mut found = Attributes { id, layer: data.i32()?, ..Attributes::default() };
     let mut source = 0;
     loop {
         match data.u8()? {
