@@ -16,6 +16,10 @@ use rayon::prelude::*;
 /// Two formulas for the same bound differ by less than this share of it.
 const SAME: f64 = 1e-9;
 
+/// Enclosures are made over smaller cells this often, for a quarter of the error each time: down to the
+/// smallest tolerance at which facets are parted, 1/4096.
+const FINER_CELLS: usize = 6;
+
 /// The sides of each triangle, for the bounds; empty on planes.
 pub(crate) fn sides(chart: &Chart<'_>, at: &Boundary) -> Vec<[Side; 3]> {
     if matches!(chart.surface, Surface::Plane { .. }) {
@@ -44,6 +48,7 @@ pub(crate) fn prove(
     }
     let chords = at.chords.iter().fold(0.0f64, |m, chord| m.max(chord.sag));
     let facets = facets_error(context, chart, &bounds, sides, log.index);
+    let facets = with_finer_cells(context, chart, sides, facets, log.index);
     let slivers = slivers_error(chart, &bounds, at, facets.error);
     // At poles the mesher goes by other parameters than it writes: claims cannot be compared there.
     found.claimable = facets.plain.max(chords);
@@ -80,6 +85,30 @@ struct FacetsError {
     error: f64,
     /// The bound of the triangles without a corner on a pole.
     plain: f64,
+}
+
+/// The bounds with enclosures over smaller cells, where the claim is below them: where facets were refined
+/// until they part, the mesher's enclosures were made for smaller errors than the tolerance.
+fn with_finer_cells(
+    context: &Context<'_>,
+    chart: &Chart<'_>,
+    sides: &[[Side; 3]],
+    mut facets: FacetsError,
+    face: usize,
+) -> FacetsError {
+    let (_, claimed) = context.enough(face);
+    let mut resolution = AIM * context.options.tolerance;
+    for _ in 0..FINER_CELLS {
+        if facets.plain <= claimed || !matches!(chart.surface, Surface::Nurbs(_)) {
+            break;
+        }
+        resolution *= 0.25;
+        let bounds = SurfaceBounds::new(chart.surface, chart.uv_box, resolution);
+        let finer = facets_error(context, chart, &bounds, sides, face);
+        facets.plain = facets.plain.min(finer.plain);
+        facets.error = facets.error.min(finer.error);
+    }
+    facets
 }
 
 fn facets_error(

@@ -18,7 +18,8 @@
 //! The convex set is the facet. Where the face goes on across one of its sides, the image of the side may
 //! bend over the neighbour: the facet is then extended across the side, and the distance of the extension
 //! from the neighbour is added. Across a side at which the face ends the facet's plane goes on: what is there
-//! lies between chord and curve, which have a bound of their own.
+//! lies between chord and curve, which have a bound of their own, or not in the face at all; points there
+//! refute nothing.
 //!
 //! Proven is that the surface over the facet's parameters is as near to the mesh as is claimed, to within
 //! [`SLACK`] and to a quarter of the tolerance; not the way back, nor what lies between the chord of an edge
@@ -267,7 +268,9 @@ impl Search<'_, '_, '_> {
         let xyz = uv.map(|p| chart.point(p));
         let off = xyz.map(|p| self.target.farthest([p; 3]));
         let all = xyz.into_iter().zip(off);
-        self.beyond.extend(all.filter(|&(_, distance)| distance > self.second.limit));
+        let is_beyond =
+            |&(p, distance): &(DVec3, f64)| distance > self.second.limit && !self.target.is_past_an_end(p);
+        self.beyond.extend(all.filter(is_beyond));
         let level = piece.level + 1;
         let is_coarse = piece.bend.is_some_and(|bend| bend.is_coarse);
         let child = |uv: [DVec2; 3], xyz, off| {
@@ -304,6 +307,12 @@ impl Target {
             outward[i] = (xyz[(i + 2) % 3] - xyz[(i + 1) % 3]).cross(normal).try_normalize()?;
         }
         Some(Self { xyz, outward, ends: sides.map(|s| s != Side::Inner), neighbours: [None; 3] })
+    }
+
+    /// True where a point of the surface lies beyond a side at which the face ends. The straight side of the
+    /// parameters may bulge over the boundary there, and the face reaches no farther than its curve.
+    fn is_past_an_end(&self, p: DVec3) -> bool {
+        (0..3).any(|i| self.ends[i] && (p - self.xyz[(i + 1) % 3]).dot(self.outward[i]) > 0.0)
     }
 
     /// An upper bound of the distance of the triangle between three points from the mesh.

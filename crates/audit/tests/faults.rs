@@ -247,6 +247,18 @@ fn an_understated_bound_is_found() {
 }
 
 #[test]
+fn an_error_proven_with_finer_enclosures_is_not_understated() {
+    // As where facets were parted: the mesh, and what is proven of it, is much finer than the tolerance.
+    for name in ["spline_ball", "revolution_bspline", "weight_range", "pipe_elbow"] {
+        let part = common::load(name).parts.into_iter().find(|p| !p.faces.is_empty()).unwrap();
+        let tolerance = 1e-2 * common::diagonal(&part);
+        let (mesh, report) = common::mesh(&part, tolerance / 16.0, None);
+        let audit = audit_part(&part, &mesh, &AuditOptions::new(tolerance), Some(&common::claims(&report)));
+        assert!(audit.clean(), "{name}: {:?}", audit.problems);
+    }
+}
+
+#[test]
 fn a_bound_that_points_exceed_is_found() {
     // As if the bound itself, which mesher and audit share, were too small.
     let mut tried = 0;

@@ -137,3 +137,23 @@ fn a_bump_between_points_is_found() {
     assert_eq!(outcome(&chart, 1e-3).0, 1, "the other facet is flat");
     assert!(outcome(&chart, 1e-3).1);
 }
+
+#[test]
+fn points_beyond_the_end_of_a_face_refute_nothing() {
+    // One facet of a cone, and nothing beside it: the straight side of its parameters bulges over its chord,
+    // and is farther from the facet's plane than any point of the cone over the facet.
+    let frame = Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X);
+    let surface = Surface::Cone { frame, radius: 20.0, half_angle: 0.896 };
+    let corners = [[0.0, 0.0], [0.1, 0.0], [0.22, 2.3]].map(|[u, v]| DVec2::new(u, v));
+    let corner = |uv| Corner { position: 0, uv, normal: surface.normal(uv).unwrap_or(DVec3::Z) };
+    let mesh =
+        FaceMesh { corners: corners.map(corner).to_vec(), triangles: vec![[0, 1, 2]], ..FaceMesh::default() };
+    let chart = chart(&surface, &mesh);
+    let bound = first_bound(&chart);
+    assert!(!outcome(&chart, bound).1, "{bound}");
+    let [a, b, c] = corners.map(|uv| surface.point(uv));
+    let normal = (b - a).cross(c - a).normalize();
+    let middle = surface.point(corners[0].midpoint(corners[2]));
+    assert!((middle - a).dot(normal).abs() > 1.05 * bound, "the side bulges less than it must for this test");
+    assert!(outcome(&chart, 0.3 * bound).1, "what lies over the facet is still looked at");
+}
