@@ -18,13 +18,17 @@
 use crate::keys::Segment;
 use crate::trimmed_face::TrimmedFace;
 use crate::unroll::Chart;
-use chordal_nurbs::{DVec2, DVec3, orient, work};
+use chordal_nurbs::{CurveInverter, DVec2, DVec3, Range, orient, work};
 
 /// The largest bulge of a curve, as a multiple of the bulge at its middle.
 const BULGE_MARGIN: f64 = 2.0;
 
 /// Bulges below this share of the chord are rounding: the curve is a straight line.
 const STRAIGHT: f64 = 1e-9;
+
+/// A point is between a chord and its curve where it is nearer to the chord by this share: one on the curve is
+/// not, however it is rounded.
+const CLEARLY: f64 = 1e-3;
 
 /// Loops with more points than this are not searched for crossings.
 const MAX_POINTS: usize = 50_000;
@@ -76,6 +80,51 @@ pub fn coarse_chords(
     coarse.sort_unstable();
     coarse.dedup();
     coarse
+}
+
+/// The chords of loops that cross which cut off an end of the other chord: that end lies between the chord and
+/// its own curve, so that a finer chord passes on the other side of it, and the other chord need not be finer.
+///
+/// ```text
+///        ___c___                 Of two chords that cross, one may be coarse and the other as fine as it must be.
+///     __/___|___\__             Where both are split again and again, as [`coarse_chords`] does, their ends may stay
+///    a      |      b            in this order until there are no more rounds.
+///           d
+/// ```
+pub fn cutting_chords(
+    context: &TrimmedFace<'_, '_>,
+    chart: &Chart,
+    is_out_of_time: &dyn Fn() -> bool,
+) -> Vec<(u32, u32)> {
+    if chart.points.len() > MAX_POINTS {
+        return Vec::new();
+    }
+    let sides = sides(context, chart);
+    let mut cutting = Vec::new();
+    for (i, j) in crossing_pairs(&sides, is_out_of_time) {
+        for (side, other) in [(&sides[i], &sides[j]), (&sides[j], &sides[i])] {
+            let Segment::Edge { edge, chord } = side.segment else { continue };
+            if (0..2).any(|end| cuts_off(context, side, other, end)) {
+                cutting.push((edge, chord));
+            }
+        }
+    }
+    cutting.sort_unstable();
+    cutting.dedup();
+    cutting
+}
+
+/// True where an end of another side lies between a side and its curve, and clearly so.
+fn cuts_off(context: &TrimmedFace<'_, '_>, side: &Side, other: &Side, end: usize) -> bool {
+    let Segment::Edge { edge, chord } = side.segment else { return false };
+    let samples = &context.edges[edge as usize];
+    let Some(curve) = context.part.edges[edge as usize].curve.as_deref() else { return false };
+    let [from, to] = [samples.t[chord as usize], samples.t[chord as usize + 1]];
+    let nearest = CurveInverter::new(curve, Range::new(from, to)).invert(other.xyz[end], None);
+    let on_curve = context.surface.descend(curve.point(nearest.t), other.uv[end]);
+    let height = |p: DVec2| orient(side.uv[0], side.uv[1], p);
+    let (own, of_curve) = (height(other.uv[end]), height(on_curve));
+    own * of_curve > 0.0 && own.abs() < (1.0 - CLEARLY) * of_curve.abs()
 }
 
 /// Chords at corners where both lie on one line and only their curves differ. The triangle between two such

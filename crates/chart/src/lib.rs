@@ -22,7 +22,7 @@ mod trimmed_face;
 mod uncross;
 mod unroll;
 
-pub use crossings::{coarse_chords, shut_corners};
+pub use crossings::{coarse_chords, cutting_chords, shut_corners};
 pub use edge_samples::EdgeSamples;
 pub use keys::{ChartPoint, Key, Segment};
 pub use seams::{SeamMetric, Seams};

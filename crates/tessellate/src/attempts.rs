@@ -10,7 +10,7 @@ use crate::options::{Cancel, Options};
 use crate::prove::Prover;
 use crate::triangulate::clip_ears;
 use chordal_brep::MeshIssue;
-use chordal_chart::{Chart, coarse_chords, loops_cross, shut_corners};
+use chordal_chart::{Chart, coarse_chords, cutting_chords, loops_cross, shut_corners};
 use chordal_nurbs::{DVec2, SurfaceBounds, UvBox};
 
 /// Meshes one face, in as many attempts as the ladder of remedies has.
@@ -110,11 +110,17 @@ fn crossing_triangles(
     culprits: &[u32],
     effort: Effort,
 ) -> Result<Vec<[u32; 3]>, Setback> {
-    let coarse = coarse_chords(&context.trimmed, chart, culprits, &|| context.is_out_of_time());
+    let is_out_of_time = || context.is_out_of_time();
+    let coarse = if effort.has(Remedy::CrossingLoops) {
+        cutting_chords(&context.trimmed, chart, &is_out_of_time)
+    } else {
+        coarse_chords(&context.trimmed, chart, culprits, &is_out_of_time)
+    };
     if context.is_out_of_time() || points.len() > MOST_EARS {
         return Err(MeshIssue::LoopsCross.into());
     }
-    if !effort.has(Remedy::CrossingLoops) && !coarse.is_empty() {
+    let are_edges_final = effort.has(Remedy::CrossingLoops) && effort.has(Remedy::AsItIs);
+    if !are_edges_final && !coarse.is_empty() {
         return Err(Setback::CoarseEdges(coarse));
     }
     let has_creases = context.trimmed.surface.creases.iter().any(|creases| !creases.is_empty());

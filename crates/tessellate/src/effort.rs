@@ -7,7 +7,8 @@
 //!    fine, points inside the face are tried before the chord is made finer.
 //! 2. From round 3 on such a chord is made finer at once, and with a chord that folds a facet all chords of
 //!    its edge that are as coarse ([`Remedy::FinerChords`]).
-//! 3. From round 6 on loops that still cross are meshed as they are ([`Remedy::CrossingLoops`]).
+//! 3. From round 6 on loops that still cross are meshed as they are ([`Remedy::CrossingLoops`]), unless a chord
+//!    cuts off an end of the other one.
 //! 4. In round 8, the last one, whatever is still too coarse is accepted and reported ([`Remedy::AsItIs`]).
 //!
 //! Within a round, an attempt that fails by the face's own doing ([`Setback`]) is followed by another
@@ -39,7 +40,8 @@ pub(crate) enum Remedy {
     /// Edges may turn by any angle. Where the surface turns at once, no seam is fine enough for a limit of
     /// angle: the tolerance comes first, and the audit reports the angle.
     AnyAngle,
-    /// Loops that cross are taken to cross in the model, not by coarse chords: no edge is made finer for it.
+    /// Loops that cross are taken to cross in the model, not by coarse chords: no edge is made finer for it but
+    /// chords that cut off an end of another one.
     CrossingLoops,
     /// What cannot be mended is accepted, with the error that it has.
     AsItIs,
