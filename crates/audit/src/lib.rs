@@ -25,6 +25,7 @@ mod distance;
 mod edges;
 mod exact_crossing;
 mod face;
+mod face_at;
 mod fan;
 mod findings;
 mod graph;

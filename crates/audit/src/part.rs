@@ -220,7 +220,7 @@ fn add_self_intersections(context: &Context<'_>, audit: &mut PartAudit) {
             triangle_pairs: found.iter().map(|crossing| crossing.facet_pairs).sum(),
             face_pairs: found.len(),
             in_file: found.iter().filter(|crossing| crossing.in_file).count(),
-            faces_cross: found.iter().filter(|crossing| crossing.faces_cross).count(),
+            faces_meet: found.iter().filter(|crossing| crossing.faces_meet).count(),
             faces: sources(most),
         };
         audit.problems.push(Problem::new(Subject::Shell(shell), of_model.source, issue));

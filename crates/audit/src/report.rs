@@ -164,11 +164,11 @@ pub struct FaceCrossing {
     pub facet_pairs: usize,
     /// All facets of the two faces were compared; else they lie so close that this would take too long.
     pub is_complete: bool,
-    /// The faces themselves cut each other in the file, or their edges are further off them than they are off
-    /// each other: no finer mesh would part them.
+    /// The faces themselves cut or touch each other in the file, or their edges are further off them than they
+    /// are off each other: no finer mesh would part them.
     pub in_file: bool,
-    /// The faces themselves cut each other in the file.
-    pub faces_cross: bool,
+    /// The faces themselves cut or touch each other in the file.
+    pub faces_meet: bool,
 }
 
 /// Two facets of a closed shell that cut each other.

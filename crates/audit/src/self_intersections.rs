@@ -13,7 +13,7 @@
 //! shows that they lie one beside the other ([`crate::graph`]). The facets of a plane, cylinder, cone, sphere
 //! or plain torus lie so because their parameters do not overlap, which is checked in the chart.
 //!
-//! For each pair of faces, it is then decided whether the exact faces cross in the file
+//! For each pair of faces, it is then decided whether the faces themselves cut or touch each other in the file
 //! ([`crate::exact_crossing`]), or only their facets do.
 
 use crate::exact_crossing::{InFile, in_file};
@@ -73,7 +73,7 @@ pub(crate) fn self_intersections(part: &Part, mesh: &PartMesh, faces: &[FaceId])
             faces: crossing.faces.map(|f| f.face),
             facet_pairs: crossing.facets.len(),
             in_file: in_file != InFile::Apart,
-            faces_cross: in_file == InFile::Crossing,
+            faces_meet: in_file >= InFile::Touching,
             is_complete: crossing.is_complete,
         }
     };
@@ -172,9 +172,14 @@ impl Crossing<'_> {
     fn in_file(&self, part: &Part, mesh: &PartMesh) -> InFile {
         let faces = self.faces.map(|f| f.face as usize);
         let cuts = self.pairs().zip(&self.facets).step_by(self.facets.len().div_ceil(MOST_PLACES).max(1));
-        let found =
-            cuts.map(|([s, t], &facets)| in_file(part, mesh, faces, facets, cut_points(s, t).center()));
-        found.max().unwrap_or(InFile::Apart)
+        let mut found = InFile::Apart;
+        for ([s, t], &facets) in cuts {
+            found = found.max(in_file(part, mesh, faces, facets, &cut_points(s, t)));
+            if found == InFile::Crossing {
+                break;
+            }
+        }
+        found
     }
 }
 

@@ -437,6 +437,48 @@ fn facets_that_cut_each_other_are_refined_until_they_part() {
     assert!(before < after && after < 2 * before, "refined at the corner only: {before}, {after}");
 }
 
+/// True where the audit finds crossing facets, and calls all of it as in the file.
+fn meets_in_file(part: &Part) -> bool {
+    let audit = audited(part, &mesh(part));
+    assert_eq!(codes(&audit), ["self-intersections"], "{:?}", audit.problems);
+    audit.problems[0].issue.is_as_in_file()
+}
+
+/// Two balls with the same centre, one of them turned.
+fn ball_in_ball(radius: f64) -> Part {
+    let mut part = Part::default();
+    let turned = Frame::new(DVec3::ZERO, DVec3::new(0.5, 0.3, 0.8).normalize(), DVec3::X);
+    for (frame, radius) in [(Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X), 1.0), (turned, radius)] {
+        face(&mut part, Surface::Sphere { frame, radius }, Vec::new());
+    }
+    close(&mut part, true);
+    part
+}
+
+#[test]
+fn faces_that_lie_on_each_other_touch_in_the_file_and_faces_that_are_hardly_apart_do_not() {
+    assert!(meets_in_file(&ball_in_ball(1.0)));
+    for apart in [1e-9, 1e-6, 1e-3] {
+        assert!(!meets_in_file(&ball_in_ball(1.0 - apart)), "{apart}");
+    }
+}
+
+#[test]
+fn solids_side_by_side_touch_in_the_file() {
+    let mut part = Part::default();
+    tetrahedron(&mut part, DVec3::ZERO);
+    tetrahedron(&mut part, DVec3::new(0.25, 0.125, 0.0));
+    close(&mut part, true);
+    assert!(meets_in_file(&part), "their floors overlap, and their walls cross");
+}
+
+#[test]
+fn a_spike_that_just_reaches_a_face_or_not_is_not_called_a_crossing() {
+    for reach in [1.0 - 1e-6, 1.0 - 1e-9, 1.0 - 1e-12] {
+        assert!(!meets_in_file(&ball_with_spike(reach)), "{reach}");
+    }
+}
+
 #[test]
 fn a_part_is_refined_alike_from_what_is_remembered_of_it() {
     let part = ball_with_spike(0.999);

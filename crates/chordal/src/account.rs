@@ -239,5 +239,6 @@ fn self_intersection(part: &Part, crossing: &FaceCrossing) -> SelfIntersection {
         faces: crossing.faces.map(|f| entity_name(part.faces[f as usize].source)),
         triangle_pairs: crossing.facet_pairs,
         in_file: crossing.in_file,
+        faces_meet: crossing.faces_meet,
     }
 }

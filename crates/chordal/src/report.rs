@@ -238,9 +238,12 @@ pub struct SelfIntersection {
     pub faces: [Option<String>; 2],
     /// Pairs of triangles that cut each other.
     pub triangle_pairs: usize,
-    /// The exact faces cross in the file, or their edges are looser than the faces are apart.
+    /// The exact faces cross or touch in the file, or their edges are looser than the faces are apart.
     #[serde(default)]
     pub in_file: bool,
+    /// The exact faces cross or touch in the file.
+    #[serde(default)]
+    pub faces_meet: bool,
 }
 
 /// A curve or point that belongs to no face.

@@ -59,11 +59,12 @@ pub enum AuditIssue {
         triangle_pairs: usize,
         /// Pairs of faces that they belong to.
         face_pairs: usize,
-        /// How many of these pairs of faces cut each other in the file, or meet at edges that are further off
-        /// the faces than the faces are off each other. The facets of the others are only too coarse.
+        /// How many of these pairs of faces cut or touch each other in the file, or meet at edges that are
+        /// further off the faces than the faces are off each other. The facets of the others are only too
+        /// coarse.
         in_file: usize,
-        /// How many of these pairs of faces cut each other in the file themselves.
-        faces_cross: usize,
+        /// How many of these pairs of faces cut or touch each other in the file themselves.
+        faces_meet: usize,
         /// The pair of faces with the most pairs of triangles; twice the same where a face cuts itself.
         faces: [Source; 2],
     },
@@ -256,14 +257,14 @@ pub enum PolylineDefect {
 
 /// Why facets cut each other that no finer mesh would part.
 const CAUSE_IN_FILE: &str =
-    "the exact faces cross in the file, or edges are looser there than the faces are apart";
+    "the exact faces cross or touch in the file, or edges are looser there than the faces are apart";
 
 impl AuditIssue {
     /// True where the mesh is as the model in the file is, which has the fault itself: all faces that it
-    /// names cut each other in the file. No finer mesh would be without it, and nothing of the shape is
+    /// names cut or touch each other in the file. No finer mesh would be without it, and nothing of the shape is
     /// missing: it is a warning.
     pub fn is_as_in_file(&self) -> bool {
-        matches!(self, Self::SelfIntersections { face_pairs, faces_cross, .. } if face_pairs == faces_cross)
+        matches!(self, Self::SelfIntersections { face_pairs, faces_meet, .. } if face_pairs == faces_meet)
     }
 
     /// A stable name for programs to match.
@@ -451,7 +452,7 @@ impl AuditIssue {
 
     /// The sentence about triangles of a shell that cut each other.
     fn fmt_self_intersections(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self::SelfIntersections { triangle_pairs, face_pairs, in_file, faces_cross, faces: [a, b] } =
+        let Self::SelfIntersections { triangle_pairs, face_pairs, in_file, faces_meet, faces: [a, b] } =
             self
         else {
             return Ok(());
@@ -465,8 +466,8 @@ impl AuditIssue {
             (true, n) => write!(f, "in {n} pairs of faces, most within face {a}"),
             (false, n) => write!(f, "in {n} pairs of faces, most of {a} and {b}"),
         }?;
-        if faces_cross == face_pairs {
-            return write!(f, "; the exact faces cross in the file");
+        if faces_meet == face_pairs {
+            return write!(f, "; the exact faces cross or touch in the file");
         }
         match (*in_file, face_pairs - in_file) {
             (_, 0) => write!(f, "; {CAUSE_IN_FILE}"),
@@ -532,11 +533,11 @@ mod tests {
 
     #[test]
     fn only_crossings_of_faces_that_all_cross_in_the_file_are_as_in_the_file() {
-        let crossing = |faces_cross| AuditIssue::SelfIntersections {
+        let crossing = |faces_meet| AuditIssue::SelfIntersections {
             triangle_pairs: 9,
             face_pairs: 2,
             in_file: 2,
-            faces_cross,
+            faces_meet,
             faces: [Source::default(); 2],
         };
         assert!(crossing(2).is_as_in_file());
