@@ -27,9 +27,10 @@
 //! edges keeps its facets apart.
 
 use crate::face_at::{FaceAt, Place};
+use crate::triangle_pair::{Facet3, common_inside, cut_points};
 use chordal_brep::{Part, VertexId};
 use chordal_mesh::PartMesh;
-use chordal_nurbs::{Box3, DVec2, DVec3};
+use chordal_nurbs::{DVec2, DVec3};
 use glam::DMat3;
 
 /// Newton steps. From inside a facet the method converges in a few or not at all.
@@ -56,14 +57,21 @@ pub(crate) enum InFile {
     Crossing,
 }
 
-/// What the file says about two faces near the points `cut` at which two of their facets cut each other.
-pub(crate) fn in_file(
-    part: &Part,
-    mesh: &PartMesh,
-    faces: [usize; 2],
-    facets: [u32; 2],
-    cut: &Box3,
-) -> InFile {
+/// Where two facets cut each other.
+pub(crate) struct Cut {
+    /// A point inside both.
+    at: DVec3,
+    length: f64,
+}
+
+impl Cut {
+    pub fn of(s: &Facet3, t: &Facet3) -> Self {
+        Self { at: common_inside(s, t), length: cut_points(s, t).diagonal() }
+    }
+}
+
+/// What the file says about two faces near a cut of two of their facets.
+pub(crate) fn in_file(part: &Part, mesh: &PartMesh, faces: [usize; 2], facets: [u32; 2], cut: Cut) -> InFile {
     let face = |i: usize| FaceAt::new(part, mesh, faces[i], facets[i]);
     let (Some(a), Some(b)) = (face(0), face(1)) else { return InFile::Apart };
     let pair = Pair::new(a, b, cut);
@@ -80,9 +88,7 @@ pub(crate) fn in_file(
 /// Two faces at a place where their facets cut each other.
 struct Pair<'a> {
     faces: [FaceAt<'a>; 2],
-    at: DVec3,
-    /// The length of the cut.
-    length: f64,
+    cut: Cut,
     /// The size of the larger facet.
     reach: f64,
     /// The edges and vertices at which the faces meet by right.
@@ -91,14 +97,13 @@ struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    fn new(a: FaceAt<'a>, b: FaceAt<'a>, cut: &Box3) -> Self {
+    fn new(a: FaceAt<'a>, b: FaceAt<'a>, cut: Cut) -> Self {
         let of_b: Vec<usize> = b.edges().collect();
         let common_edges = a.edges().filter(|edge| of_b.contains(edge)).collect();
         let of_b = b.vertices();
         let common_vertices = a.vertices().into_iter().filter(|vertex| of_b.contains(vertex)).collect();
         let reach = a.size_of_facet().max(b.size_of_facet());
-        let (at, length) = (cut.center(), cut.diagonal());
-        Self { faces: [a, b], at, length, reach, common_edges, common_vertices }
+        Self { faces: [a, b], cut, reach, common_edges, common_vertices }
     }
 
     /// Places at the cut, and beyond it along its line: where the faces cut each other, they do so along a
@@ -106,9 +111,10 @@ impl<'a> Pair<'a> {
     fn starts(&self) -> impl Iterator<Item = DVec3> + '_ {
         let [n, m] = self.faces.each_ref().map(|face| face.normal_of_facet().normalize_or_zero());
         let line = n.cross(m).try_normalize();
-        let along = [0.45 * self.length, -0.45 * self.length, 0.5 * self.reach, -0.5 * self.reach];
-        let beside = line.into_iter().flat_map(move |d| along.into_iter().map(move |s| self.at + d * s));
-        std::iter::once(self.at).chain(beside)
+        let Cut { at, length } = self.cut;
+        let along = [0.45 * length, -0.45 * length, 0.5 * self.reach, -0.5 * self.reach];
+        let beside = line.into_iter().flat_map(move |d| along.into_iter().map(move |s| at + d * s));
+        std::iter::once(at).chain(beside)
     }
 
     fn rounding(&self) -> f64 {
@@ -122,7 +128,7 @@ impl<'a> Pair<'a> {
             return InFile::Apart;
         };
         let p = a.surface.point(of_a);
-        if p.distance(self.at) > self.reach || (a.index == b.index && a.is_same_place(of_a, of_b)) {
+        if p.distance(self.cut.at) > self.reach || (a.index == b.index && a.is_same_place(of_a, of_b)) {
             return InFile::Apart;
         }
         let Some((n, m)) = a.surface.normal(of_a).zip(b.surface.normal(of_b)) else { return InFile::Apart };
@@ -133,10 +139,20 @@ impl<'a> Pair<'a> {
             return InFile::Apart;
         }
         match (a.place(of_a, p, error), b.place(of_b, p, error)) {
-            (Place::Elsewhere, _) | (_, Place::Elsewhere) => InFile::Apart,
             (Place::Inside, Place::Inside) if sine > TOUCHING => InFile::Crossing,
-            _ => InFile::Touching,
+            (Place::Inside | Place::Border, Place::Inside | Place::Border) => InFile::Touching,
+            _ if self.has_border_on(a, b, p, error) || self.has_border_on(b, a, p, error) => InFile::Touching,
+            _ => InFile::Apart,
         }
+    }
+
+    /// True where the border of `a` near a point lies on `b`: where the surfaces are tangent, the point
+    /// itself is not known well enough to be called a point of the border.
+    fn has_border_on(&self, a: &FaceAt<'_>, b: &FaceAt<'_>, p: DVec3, error: f64) -> bool {
+        let Some(on_border) = a.border_near(p, error) else { return false };
+        let uv = b.foot(on_border);
+        let q = b.surface.point(uv);
+        q.distance(on_border) <= self.rounding() && b.place(uv, q, error) != Place::Elsewhere
     }
 
     /// What a common point may be off along the surfaces. Where they are tangent, the root of rounding.
@@ -182,7 +198,7 @@ impl<'a> Pair<'a> {
     /// other.
     fn has_loose_edges(&self) -> bool {
         let [a, b] = &self.faces;
-        let [p, q] = self.faces.each_ref().map(|face| face.surface.point(face.foot(self.at)));
+        let [p, q] = self.faces.each_ref().map(|face| face.surface.point(face.foot(self.cut.at)));
         let gap = a.gap_of_facet().max(b.gap_of_facet());
         gap > self.rounding() && gap >= p.distance(q)
     }

@@ -196,6 +196,12 @@ impl<'a> FaceAt<'a> {
         }
     }
 
+    /// The nearest point of its edges, if it is no farther from a point than `error`.
+    pub fn border_near(&self, p: DVec3, error: f64) -> Option<DVec3> {
+        let near = self.nearest_on_edges(p).into_iter().filter(|n| n.distance <= error);
+        near.min_by(|a, b| a.distance.total_cmp(&b.distance)).map(|n| n.point)
+    }
+
     /// The nearest points of all edges that may be the nearest one, or nearer than their chords are off.
     fn nearest_on_edges(&self, p: DVec3) -> Vec<NearestOnEdge> {
         let to_chords: Vec<(usize, f64, f64)> = self

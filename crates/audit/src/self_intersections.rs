@@ -16,7 +16,7 @@
 //! For each pair of faces, it is then decided whether the faces themselves cut or touch each other in the file
 //! ([`crate::exact_crossing`]), or only their facets do.
 
-use crate::exact_crossing::{InFile, in_file};
+use crate::exact_crossing::{Cut, InFile, in_file};
 use crate::graph::is_graph;
 use crate::report::{FaceCrossing, FacetCrossing};
 use crate::separation::PlaneFace;
@@ -81,14 +81,13 @@ pub(crate) fn self_intersections(part: &Part, mesh: &PartMesh, faces: &[FaceId])
 }
 
 /// Every two facets of the named closed shells that cut each other, in the order of faces and facets, but for
-/// those whose faces cut each other in the file: the places at which to refine a mesh.
+/// those whose faces cut or touch each other in the file: the places at which to refine a mesh.
 pub fn facet_crossings(part: &Part, mesh: &PartMesh, shells: &[u32]) -> Vec<FacetCrossing> {
     let mut found = Vec::new();
     for &shell in shells {
         let all = facets_of_faces(mesh, &part.shells[shell as usize].faces);
         let crossings = crossings(part, mesh, &all);
-        let to_part =
-            crossings.par_iter().filter(|crossing| crossing.in_file(part, mesh) != InFile::Crossing);
+        let to_part = crossings.par_iter().filter(|crossing| crossing.in_file(part, mesh) < InFile::Touching);
         found.extend(to_part.flat_map_iter(Crossing::facet_crossings).collect::<Vec<_>>());
     }
     found
@@ -174,7 +173,7 @@ impl Crossing<'_> {
         let cuts = self.pairs().zip(&self.facets).step_by(self.facets.len().div_ceil(MOST_PLACES).max(1));
         let mut found = InFile::Apart;
         for ([s, t], &facets) in cuts {
-            found = found.max(in_file(part, mesh, faces, facets, &cut_points(s, t)));
+            found = found.max(in_file(part, mesh, faces, facets, Cut::of(s, t)));
             if found == InFile::Crossing {
                 break;
             }

@@ -105,6 +105,37 @@ pub(crate) fn cut_points(s: &Facet3, t: &Facet3) -> Box3 {
     all
 }
 
+/// A point inside both of two triangles that cut each other, up to rounding.
+pub(crate) fn common_inside(s: &Facet3, t: &Facet3) -> DVec3 {
+    let is_flat = |of: &Facet3, other: &Facet3| of.xyz.iter().all(|&p| other.side_of(p) == 0.0);
+    if is_flat(s, t) || is_flat(t, s) {
+        let common = clipped(&s.xyz, t);
+        if !common.is_empty() {
+            return common.iter().sum::<DVec3>() / common.len() as f64;
+        }
+    }
+    cut_points(s, t).center()
+}
+
+/// What a triangle and another one in its plane have in common, as the corners of a convex polygon.
+fn clipped(s: &Triangle, t: &Facet3) -> Vec<DVec3> {
+    let mut polygon = s.to_vec();
+    for i in 0..3 {
+        let (a, b) = (t.xyz[i], t.xyz[(i + 1) % 3]);
+        let inwards = t.normal.cross(b - a);
+        let height = |p: DVec3| inwards.dot(p - a);
+        let n = polygon.len();
+        let kept = |k: usize| {
+            let (p, q) = (polygon[k], polygon[(k + 1) % n]);
+            let (of_p, of_q) = (height(p), height(q));
+            let crossing = (of_p * of_q < 0.0).then(|| p.lerp(q, of_p / (of_p - of_q)));
+            (of_p >= 0.0).then_some(p).into_iter().chain(crossing)
+        };
+        polygon = (0..n).flat_map(kept).collect();
+    }
+    polygon
+}
+
 fn exact_side(plane: &Triangle, p: DVec3) -> f64 {
     // Four points with one coordinate in common are in one plane: most are on models along the axes.
     let same = |axis: usize| plane.iter().all(|q| q[axis] == p[axis]);
@@ -276,6 +307,8 @@ mod tests {
         assert!(both_ways(&floor(), &inside));
         let across = facet([3, 4, 5], [[-1., 1., 0.], [9., 1., 0.], [9., 1.5, 0.]]);
         assert!(both_ways(&floor(), &across));
+        let strip = common_inside(&floor(), &across);
+        assert!(strip.x + strip.y < 4.0 && strip.x > 0.0 && (1.0..1.5).contains(&strip.y), "{strip}");
         let copy = facet([3, 4, 5], [[0., 0., 0.], [4., 0., 0.], [0., 4., 0.]]);
         assert!(both_ways(&floor(), &copy));
     }
