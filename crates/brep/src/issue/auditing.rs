@@ -452,8 +452,7 @@ impl AuditIssue {
 
     /// The sentence about triangles of a shell that cut each other.
     fn fmt_self_intersections(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self::SelfIntersections { triangle_pairs, face_pairs, in_file, faces_meet, faces: [a, b] } =
-            self
+        let Self::SelfIntersections { triangle_pairs, face_pairs, in_file, faces_meet, faces: [a, b] } = self
         else {
             return Ok(());
         };
