@@ -31,6 +31,7 @@ pub struct Mesh {
     faces: Py<PyArrayDyn<i32>>,
     parts: Py<PyArrayDyn<u32>>,
     instances: Py<PyArrayDyn<u32>>,
+    placed_faces: PyOnceLock<Py<PyArrayDyn<i32>>>,
     normals: PyOnceLock<Doubles>,
     uv: PyOnceLock<Doubles>,
     report: PyOnceLock<Py<PyAny>>,
@@ -56,10 +57,28 @@ impl Mesh {
             faces: array(py, faces, &[count])?.unbind(),
             parts: array(py, arrays.parts, &[count])?.unbind(),
             instances: array(py, arrays.placements, &[count])?.unbind(),
+            placed_faces: PyOnceLock::new(),
             normals: PyOnceLock::new(),
             uv: PyOnceLock::new(),
             report: PyOnceLock::new(),
         })
+    }
+
+    /// The face of every triangle, counted over all instances.
+    fn placed_faces(&self) -> Vec<i32> {
+        let parts = self.shared.model.brep().placements();
+        let firsts: Vec<i32> = parts
+            .iter()
+            .scan(0, |sum, placed| {
+                let first = *sum;
+                *sum += self.shared.model.brep().parts[placed.part.index()].faces.len() as i32;
+                Some(first)
+            })
+            .collect();
+        let number = |triangle: chordal::Triangle| {
+            triangle.face.map_or(-1, |face| firsts[triangle.placement] + face.0 as i32)
+        };
+        self.meshed.triangles().map(number).collect()
     }
 
     /// One row per corner of every triangle.
@@ -119,6 +138,18 @@ impl Mesh {
     #[getter]
     fn face_of_triangle<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<i32>> {
         shown(py, &self.faces)
+    }
+
+    /// The face of every triangle, where the faces of every instance count: int32 (m,), read-only. The faces of
+    /// all instances are counted one behind the other; -1 for triangles that were in the file already.
+    #[getter]
+    fn placed_face_of_triangle<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
+        let made = self.placed_faces.get_or_try_init(py, || -> PyResult<Py<PyArrayDyn<i32>>> {
+            let faces: Vec<i32> = py.detach(|| self.placed_faces());
+            let count = faces.len();
+            Ok(array(py, faces, &[count])?.unbind())
+        });
+        made.map(|faces| shown(py, faces))
     }
 
     /// The part of every triangle, a number of `Model.parts`: uint32 (m,), read-only.

@@ -9,6 +9,7 @@ use crate::shared::Shared;
 use chordal::{Cancel, Mesher, ReadOptions};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyDict, PyTuple};
 use std::iter;
 use std::ops::ControlFlow;
@@ -26,7 +27,7 @@ pub struct Model(pub Arc<Shared>);
 pub fn read(
     py: Python<'_>,
     path: Option<PathBuf>,
-    content: Option<Vec<u8>>,
+    content: Option<PyBackedBytes>,
     name: &str,
     format: Option<&str>,
     winding: Option<&str>,
@@ -40,7 +41,9 @@ pub fn read(
     caller.tell("reading", 0.0)?;
     let model = caller.run(&Cancel::default(), move |_| match (path, content) {
         (Some(path), _) => chordal::Model::open_with(path, format, &options),
-        (None, content) => chordal::Model::from_bytes_with(&content.unwrap_or_default(), format, &options),
+        (None, content) => {
+            chordal::Model::from_bytes_with(content.as_deref().unwrap_or_default(), format, &options)
+        }
     })?;
     caller.tell("reading", 1.0)?;
     Ok(Model(Arc::new(Shared::new(model))))

@@ -77,6 +77,35 @@ def test_faces_keep_their_order_and_the_volume_its_size() -> None:
         assert np.allclose(ours, [centre.X(), centre.Y(), centre.Z()], atol=1e-2)
 
 
+def test_a_shape_that_a_compound_has_twice() -> None:
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import TopoDS_Compound
+
+    def moved(shape: Any, x: float) -> Any:
+        by = gp_Trsf()
+        by.SetTranslation(gp_Vec(x, 0, 0))
+        return shape.Moved(TopLoc_Location(by))
+
+    block, compound, builder = drilled_block(), TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(compound)
+    for part in (moved(block, 50), BRepPrimAPI_MakeCylinder(4.0, 9.0).Shape(), moved(block, 100)):
+        builder.Add(compound, part)
+    mesh = chordal.from_ocp(compound).mesh(0.001, None)
+    assert len(mesh.model.faces) == 10 and len(mesh.model.instances) == 3
+    theirs = faces(compound)
+    assert len(theirs) == 17 and set(mesh.placed_face_of_triangle.tolist()) == set(range(17))
+    corners = mesh.vertices[mesh.triangles]
+    for number, face in enumerate(theirs):
+        own = corners[mesh.placed_face_of_triangle == number]
+        areas = np.linalg.norm(np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]), axis=1)
+        centre = surface_properties(face).CentreOfMass()
+        ours = np.average(own.mean(axis=1), axis=0, weights=areas)
+        assert np.allclose(ours, [centre.X(), centre.Y(), centre.Z()], atol=1e-2)
+
+
 def test_a_wrapped_shape_is_unwrapped() -> None:
     class Wrapper:
         wrapped = drilled_block()

@@ -110,7 +110,8 @@ def _wrapped(shape: Any) -> Any:
 def from_ocp(shape: Any) -> Model:
     """The model of a shape of OCP, CadQuery or build123d, through its BREP form in memory.
 
-    The faces of the model are in the order of `TopExp_Explorer` (`shape.Faces()` in CadQuery), each once.
+    The faces are in the order of `shape.Faces()` (`TopExp_Explorer`). A shape that a compound has twice is one
+    part with two instances: `Mesh.placed_face_of_triangle` counts its faces twice, as `shape.Faces()` does.
     """
     tools = _package("OCP.BRepTools", "cadquery-ocp", "from_ocp").BRepTools
     text = io.BytesIO()

@@ -281,6 +281,13 @@ class Mesh:
         -1 for triangles that were in the file already.
         """
     @property
+    def placed_face_of_triangle(self) -> NDArray[np.int32]:
+        """The face of every triangle, where the faces of every instance count: int32 (m,), read-only.
+
+        The faces of all instances are counted one behind the other, as CAD kernels do; -1 for triangles that
+        were in the file already.
+        """
+    @property
     def part_of_triangle(self) -> NDArray[np.uint32]:
         """The part of every triangle, a number of `Model.parts`: uint32 (m,), read-only."""
     @property
