@@ -132,7 +132,7 @@ class Trial:
         if fault or not measured.stdout:
             return f"check --against: {fault or measured.stderr.decode(errors='replace').strip()}"
         distances = json.loads(measured.stdout)["against"]
-        worst = max(distances["mesh_to_model"], distances["model_to_mesh"])
+        worst = max(distances["mesh_to_model_beyond_gap"], distances["model_to_mesh_beyond_gap"])
         allowed = 1.001 * claimed["options"]["tolerance"] + distances["reference_error"]
         return f"check --against: {worst / claimed['options']['tolerance']:.2f} x the tolerance" if worst > allowed else ""
 

@@ -22,8 +22,11 @@ pub fn run(args: &CheckArgs) -> Exit {
         }
     };
     print(&if args.json { found.to_json() } else { text(&found) });
-    let far =
-        |limit: f64| found.against.as_ref().is_some_and(|a| a.mesh_to_model.max(a.model_to_mesh) > limit);
+    // What the file is loose by is no error of the mesh.
+    let far = |limit: f64| {
+        let largest = |a: &AgainstReport| a.mesh_to_model_beyond_gap.max(a.model_to_mesh_beyond_gap);
+        found.against.as_ref().is_some_and(|a| largest(a) > limit)
+    };
     if found.clean() && !args.tolerance.is_some_and(far) { Exit::Clean } else { Exit::Problems }
 }
 
@@ -69,10 +72,10 @@ fn distances(out: &mut String, against: &AgainstReport) {
     let _ = writeln!(
         out,
         "mesh → model  {}{within} at {} samples{}\nmodel → mesh  {} at {} samples{}",
-        length_mm(against.mesh_to_model),
+        both(against.mesh_to_model, against.mesh_to_model_beyond_gap),
         against.mesh_samples,
         at_most(against.mesh_to_model_at_most),
-        length_mm(against.model_to_mesh),
+        both(against.model_to_mesh, against.model_to_mesh_beyond_gap),
         against.model_samples,
         at_most(against.model_to_mesh_at_most)
     );
@@ -80,6 +83,13 @@ fn distances(out: &mut String, against: &AgainstReport) {
         let _ = writeln!(out, "{} faces of the model were not compared", against.faces_not_compared);
     }
     for face in &against.worst_faces {
-        let _ = writeln!(out, "  {}  {} {} of {}", length_mm(face.distance), face.kind, face.id, face.part);
+        let distance = both(face.distance, face.beyond_gap);
+        let _ = writeln!(out, "  {distance}  {} {} of {}", face.kind, face.id, face.part);
     }
+}
+
+/// A distance, and what of it is beyond the gap of the file where that is less.
+fn both(distance: f64, beyond_gap: f64) -> String {
+    let [whole, beyond] = [distance, beyond_gap].map(length_mm);
+    if whole == beyond { whole } else { format!("{whole} ({beyond} beyond the gap of the file)") }
 }

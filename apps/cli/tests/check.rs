@@ -37,6 +37,8 @@ fn distances_are_measured_both_ways() {
     for way in ["mesh_to_model", "model_to_mesh"] {
         let distance = against[way].as_f64().expect("a distance");
         assert!(distance > 0.02 && distance <= 0.1 + within, "{way}: {distance}");
+        let beyond = against[format!("{way}_beyond_gap")].as_f64().expect("a distance");
+        assert!(beyond <= distance && beyond <= 0.1, "{way}: {beyond}");
     }
     report("check {} --against {} --tolerance 0.01mm --json", &[&out, &model("bracket")], 1);
     let other = report("check {} --against {} --json", &[&out, &model("sphere_full")], 0);
@@ -86,4 +88,23 @@ fn what_is_no_mesh_is_one_sentence() {
     run("check {}", &[&out]).exits(&[2]).says_one_sentence();
     run("check nowhere.stl", &[]).exits(&[2]).says_one_sentence();
     run("check {}", &[&model("bracket")]).exits(&[2]).says_one_sentence();
+}
+
+#[test]
+fn distances_are_given_with_and_without_the_gap_of_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("m.ply");
+    let report_at = folder.path().join("r.json");
+    run("mesh {} -o {} -q --tolerance 0.1mm --report {}", &[&model("loose_edges"), &out, &report_at])
+        .exits(&[0, 1]);
+    let found = report("check {} --against {} --json", &[&out, &model("loose_edges")], 0);
+    let value = |name: &str| found["against"][name].as_f64().expect("a distance");
+    let claimed: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&report_at).expect("a report")).expect("JSON");
+    let proven = claimed["proven_error"].as_f64().expect("a proof");
+    for way in ["mesh_to_model", "model_to_mesh"] {
+        assert!(value(&format!("{way}_beyond_gap")) <= 1.000_001 * proven, "{way}: {proven}");
+    }
+    // The edges lie 0.3 mm off the cylinder, on which the mesh is farthest from the model.
+    assert!(value("mesh_to_model") > 0.05 && value("mesh_to_model_beyond_gap") < 0.01);
 }

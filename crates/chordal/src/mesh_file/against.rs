@@ -4,8 +4,8 @@
 //! The model is meshed finely; vertices of that mesh lie on the exact surfaces, and its triangles within its
 //! proven error of them. Model → mesh: from these vertices to the nearest triangle of the mesh. Mesh → model:
 //! from samples of the mesh to the exact surface near the closest fine triangle ([`reference`]), so that the
-//! error of the fine mesh is not taken for one of the mesh. What the edges of the file lie off its surfaces
-//! is subtracted on both ways: no mesh can be nearer to both. Where every face is proven, branch and bound
+//! error of the fine mesh is not taken for one of the mesh. Both ways, the distance is also given without what
+//! the edges of the file lie off its surfaces: no mesh can be nearer to both. Where every face is proven, branch and bound
 //! between the two meshes also gives distances that no point can exceed; these contain the error of the fine
 //! mesh and what the file is loose by.
 
@@ -21,7 +21,7 @@ use chordal_mesh::TriangleSoup;
 use chordal_tessellate::Cancel;
 use glam::DVec3;
 use rayon::prelude::*;
-use reference::{PlacedFace, Reference};
+use reference::{Farthest, PlacedFace, Reference};
 use serde::Serialize;
 use std::path::Path;
 
@@ -38,11 +38,14 @@ pub struct AgainstReport {
     /// "branch and bound": the distances lie between those measured at samples and `…_at_most`; "measured":
     /// largest distances over samples, which are lower bounds.
     pub method: String,
-    /// Largest distance of a sample of the mesh from the model's exact faces, beyond the gap between edges
-    /// and surfaces that the file has there.
+    /// Largest distance of a sample of the mesh from the model's exact faces.
     pub mesh_to_model: f64,
-    /// Largest distance of a sample of the model's exact faces from the mesh, beyond that gap.
+    /// The same beyond the gap between edges and surfaces that the file has at each sample.
+    pub mesh_to_model_beyond_gap: f64,
+    /// Largest distance of a sample of the model's exact faces, or of their edges, from the mesh.
     pub model_to_mesh: f64,
+    /// The same beyond that gap.
+    pub model_to_mesh_beyond_gap: f64,
     /// No point of the mesh is farther from the model; `null` where a face of the model has no proof.
     pub mesh_to_model_at_most: Option<f64>,
     /// No point of the model's exact faces is farther from the mesh; `null` where one of them has no proof.
@@ -70,6 +73,8 @@ pub struct WorstFace {
     pub part: String,
     /// Its largest measured distance from the mesh, in millimetres.
     pub distance: f64,
+    /// The same beyond the gap of the face.
+    pub beyond_gap: f64,
 }
 
 /// Measures the distance between `soup`, in millimetres and Z up, and the model in the file `input`;
@@ -95,11 +100,13 @@ pub fn measure_against(
 
     let samples = mesh_samples(soup);
     let mesh_to_model = reference.farthest(&samples);
-    let mut faces: Vec<(WorstFace, usize)> =
-        reference.faces.par_iter().map(|face| worst_face(face, &mesh)).collect();
-    let model_samples = faces.iter().map(|f| f.1).sum();
-    faces.sort_by(|a, b| b.0.distance.total_cmp(&a.0.distance));
-    let model_to_mesh = faces.first().map_or(0.0, |f| f.0.distance);
+    let measured: Vec<(Farthest, usize)> =
+        reference.faces.par_iter().map(|face| face.distance_from(&mesh)).collect();
+    let model_samples = measured.iter().map(|of_face| of_face.1).sum();
+    let model_to_mesh = measured.iter().fold(Farthest::default(), |all, of_face| all.larger(of_face.0));
+    let mut faces: Vec<WorstFace> =
+        reference.faces.iter().zip(&measured).map(|(face, of_face)| worst_face(face, of_face.0)).collect();
+    faces.sort_by(|a, b| b.beyond_gap.total_cmp(&a.beyond_gap));
     let faces_not_compared = model.placed_faces() - faces.len();
     // How far the fine mesh may be from the model, with what the file is loose by.
     let apart = reference_distance(&resolved, &parts).filter(|_| faces_not_compared == 0);
@@ -109,16 +116,19 @@ pub fn measure_against(
     Ok(AgainstReport {
         model: input.display().to_string(),
         method: if apart.is_some() { "branch and bound" } else { "measured" }.into(),
-        mesh_to_model,
-        model_to_mesh,
+        mesh_to_model: mesh_to_model.distance,
+        mesh_to_model_beyond_gap: mesh_to_model.beyond_gap,
+        model_to_mesh: model_to_mesh.distance,
+        model_to_mesh_beyond_gap: model_to_mesh.beyond_gap,
         mesh_to_model_at_most: apart
-            .map(|apart| at_most(&mesh_triangles, &reference.tree, mesh_to_model, apart)),
-        model_to_mesh_at_most: apart.map(|apart| at_most(&reference.triangles, &mesh, model_to_mesh, apart)),
+            .map(|apart| at_most(&mesh_triangles, &reference.tree, mesh_to_model.beyond_gap, apart)),
+        model_to_mesh_at_most: apart
+            .map(|apart| at_most(&reference.triangles, &mesh, model_to_mesh.beyond_gap, apart)),
         reference_error: reference_error(&resolved, &parts),
         mesh_samples: samples.len(),
         model_samples,
         faces_not_compared,
-        worst_faces: faces.into_iter().map(|f| f.0).take(WORST).collect(),
+        worst_faces: faces.into_iter().take(WORST).collect(),
     })
 }
 
@@ -142,10 +152,9 @@ fn mesh_samples(soup: &TriangleSoup) -> Vec<DVec3> {
     samples
 }
 
-/// The distance of a placed face from the mesh, and the number of its samples.
-fn worst_face(face: &PlacedFace<'_>, mesh: &TriangleTree) -> (WorstFace, usize) {
-    let (distance, samples) = face.distance_from(mesh);
-    (WorstFace { id: face.id(), kind: face.kind(), part: face.part.name.clone(), distance }, samples)
+fn worst_face(face: &PlacedFace<'_>, from_mesh: Farthest) -> WorstFace {
+    let Farthest { distance, beyond_gap } = from_mesh;
+    WorstFace { id: face.id(), kind: face.kind(), part: face.part.name.clone(), distance, beyond_gap }
 }
 
 /// The largest distance of the fine mesh from the exact faces, and the other way round: proven error and gap.

@@ -3,7 +3,7 @@
 //! The distance of a point from the fine mesh is that from the model to within the error of the fine mesh. So
 //! where it matters, the nearest point of the fine mesh is only the start: Gauss–Newton from its parameters
 //! leads to the nearest point of the exact surface there, and the shorter of the two distances is taken. What
-//! the edges of the file lie off its surfaces is no error of a mesh, and is subtracted.
+//! the edges of the file lie off its surfaces is no error of a mesh: each distance is also given without it.
 
 use crate::meshed_part::MeshedPart;
 use crate::names::face_kind;
@@ -25,6 +25,23 @@ const SLIDE: f64 = 2.0;
 
 /// Points refined together before the largest distance is looked at again.
 const BLOCK: usize = 1024;
+
+/// The largest distance of some points.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Farthest {
+    pub distance: f64,
+    /// The largest after what the file is loose by at each point is subtracted.
+    pub beyond_gap: f64,
+}
+
+impl Farthest {
+    pub fn larger(self, other: Self) -> Self {
+        Self {
+            distance: self.distance.max(other.distance),
+            beyond_gap: self.beyond_gap.max(other.beyond_gap),
+        }
+    }
+}
 
 /// One placed face with triangles.
 pub(super) struct PlacedFace<'a> {
@@ -70,11 +87,20 @@ impl<'a> Reference<'a> {
         Self { faces, triangles, tree, owners }
     }
 
-    /// The largest distance of any of the points from the exact faces, beyond what the file is loose by
-    /// there.
-    pub fn farthest(&self, points: &[DVec3]) -> f64 {
-        let measure = |&p: &DVec3| self.tree.nearest(p).map(|n| (self.beyond_gap(n.distance, &n), n, p));
-        let mut all: Vec<(f64, Nearest, DVec3)> = points.par_iter().filter_map(measure).collect();
+    /// The largest distance of any of the points from the exact faces.
+    pub fn farthest(&self, points: &[DVec3]) -> Farthest {
+        let found: Vec<(Nearest, DVec3)> =
+            points.par_iter().filter_map(|&p| self.tree.nearest(p).map(|n| (n, p))).collect();
+        Farthest {
+            distance: self.largest(&found, &|_| 0.0),
+            beyond_gap: self.largest(&found, &|nearest| self.gap_at(nearest)),
+        }
+    }
+
+    /// The largest distance after what is loose at each point is subtracted.
+    fn largest(&self, found: &[(Nearest, DVec3)], loose: &(dyn Fn(&Nearest) -> f64 + Sync)) -> f64 {
+        let mut all: Vec<(f64, &(Nearest, DVec3))> =
+            found.par_iter().map(|one| (one.0.distance - loose(&one.0), one)).collect();
         all.par_sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut largest = 0.0f64;
         for block in all.chunks(BLOCK) {
@@ -82,14 +108,14 @@ impl<'a> Reference<'a> {
             if block[0].0 <= largest {
                 break;
             }
-            let refined = block.par_iter().map(|(_, n, p)| self.beyond_gap(self.refined(*p, n), n));
+            let refined = block.par_iter().map(|(_, (n, p))| self.refined(*p, n) - loose(n));
             largest = largest.max(refined.reduce(|| 0.0, f64::max));
         }
         largest
     }
 
-    fn beyond_gap(&self, distance: f64, nearest: &Nearest) -> f64 {
-        (distance - self.faces[self.owners[nearest.index].0 as usize].gap).max(0.0)
+    fn gap_at(&self, nearest: &Nearest) -> f64 {
+        self.faces[self.owners[nearest.index].0 as usize].gap
     }
 
     /// The distance of `p` from the exact surface near the nearest point of the fine mesh, where that is
@@ -114,12 +140,12 @@ impl PlacedFace<'_> {
         self.world.transform_point3(self.meshed.mesh.positions[position as usize])
     }
 
-    /// The largest distance of a corner, which lies on the exact face, from a mesh, beyond the gap; and the
-    /// number of corners.
-    pub fn distance_from(&self, mesh: &TriangleTree) -> (f64, usize) {
+    /// The largest distance of a corner, which lies on the exact face, from a mesh; and the number of corners.
+    pub fn distance_from(&self, mesh: &TriangleTree) -> (Farthest, usize) {
         let n = self.mesh.corners.len();
         let distances = (0..n as u32).map(|c| mesh.distance(self.corner(c), f64::INFINITY));
-        ((distances.fold(0.0, f64::max) - self.gap).max(0.0), n)
+        let distance = distances.fold(0.0, f64::max);
+        (Farthest { distance, beyond_gap: (distance - self.gap).max(0.0) }, n)
     }
 
     pub fn id(&self) -> String {
