@@ -70,9 +70,12 @@ fn attempt(
     };
     let mut face = FaceMesh::new(context, limits, chart, shape, triangles, &options.bulk);
     // 3. Fill it and prove it.
-    let finest = context.closer.iter().fold(limits.tolerance, |least, place| least.min(place.tolerance));
-    let bounds = SurfaceBounds::new(context.trimmed.surface.surface, uv_box, finest);
-    let mut prover = Prover::new(&bounds, limits, options, context.budget, cancel, effort);
+    let finest = context.closer.iter().map(|place| place.tolerance).reduce(f64::min);
+    let surface = context.trimmed.surface.surface;
+    let finer = finest.map(|finest| SurfaceBounds::new(surface, uv_box, finest));
+    let bounds = SurfaceBounds::new(surface, uv_box, limits.tolerance);
+    let mut prover =
+        Prover::new(&bounds, limits, options, context.budget, cancel, effort).with_finer(finer.as_ref());
     if are_loops_crossing && face.is_turned_somewhere() {
         prover = prover.for_crossing_loops();
     }

@@ -39,9 +39,9 @@ pub struct FacetCut {
 /// Finds facets of a mesh of a part that cut each other although their faces do not.
 pub type FindCuts<'f> = dyn Fn(&Part, &PartMesh) -> Vec<FacetCut> + Sync + 'f;
 
-/// How often both sides of what cuts are refined. With [`STEP`], the last tolerance is 1/4096 of the first:
+/// How often both sides of what cuts are refined. With [`STEP`], the last tolerance is 1/65536 of the first:
 /// walls thinner than that are below what files keep.
-const PARTINGS: usize = 6;
+const PARTINGS: usize = 8;
 
 /// The tolerance around a cut as a share of the one before. Chords become half as long by it. A larger share
 /// needs more rounds, each with a search of the whole part; a smaller one makes more triangles than needed.
@@ -73,8 +73,12 @@ pub(crate) fn part_facets(pass: Pass<'_, '_>, result: PassResult, find: &FindCut
         return result;
     }
     parting.left = still.intersection(&before).copied().collect();
-    let (refined, again) = parting.refined(&result, cuts);
-    if again.len() < before.len() { refined } else { result }
+    let (without_left, again) = parting.refined(&result, cuts);
+    match () {
+        () if still.len() < again.len() => refined,
+        () if again.len() < before.len() => without_left,
+        () => result,
+    }
 }
 
 fn pairs(cuts: &[FacetCut]) -> BTreeSet<FacePair> {

@@ -55,6 +55,8 @@ const SLIVER_PASSES: u32 = 3;
 
 pub(crate) struct Prover<'a> {
     bounds: &'a SurfaceBounds<'a>,
+    /// Tight bounds for places at which facets must lie closer to the surface.
+    finer: Option<&'a SurfaceBounds<'a>>,
     limits: &'a Limits,
     most_triangles: usize,
     budget: Budget,
@@ -82,6 +84,7 @@ impl<'a> Prover<'a> {
         let tries_points = options.fill_method.is_none() && !effort.has(Remedy::FinerChords);
         Self {
             bounds,
+            finer: None,
             limits,
             most_triangles: options.face_triangles,
             budget,
@@ -92,6 +95,11 @@ impl<'a> Prover<'a> {
             points_first: if tries_points { POINTS_FIRST } else { 0 },
             is_hopeless: false,
         }
+    }
+
+    /// The prover of a face with places at which its facets must lie closer to the surface.
+    pub fn with_finer(self, finer: Option<&'a SurfaceBounds<'a>>) -> Self {
+        Self { finer, ..self }
     }
 
     /// The prover of a face whose loops cross in truth: triangles that are turned over are accepted.

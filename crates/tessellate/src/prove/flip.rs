@@ -57,7 +57,7 @@ impl Prover<'_> {
             sag,
         };
         let allowed = self.allowed(face, corners);
-        self.folded_height(facet.xyz, corners.map(|v| face.normal(v))).is_none()
+        self.folded_height(facet.xyz, corners.map(|v| face.normal(v)), allowed).is_none()
             && self.bound(face, &facet, allowed).error <= allowed
     }
 }

@@ -69,8 +69,18 @@ impl Prover<'_> {
         if self.sampled {
             sampled_bound(face, facet)
         } else {
-            facet_bound(self.bounds, facet, allowed, &mut self.scratch)
+            let finer = self.finer.filter(|_| allowed < self.limits.tolerance);
+            facet_bound(finer.unwrap_or(self.bounds), facet, allowed, &mut self.scratch)
         }
+    }
+
+    /// What is claimed of a facet within its limits. A facet that must lie closer is proven by bounds that
+    /// are tight there; what is claimed is what anybody finds again who knows the tolerance only.
+    fn claimed(&mut self, facet: &Facet, error: f64, allowed: f64) -> f64 {
+        if self.sampled || allowed >= self.limits.tolerance {
+            return error;
+        }
+        error.max(facet_bound(self.bounds, facet, self.limits.tolerance, &mut self.scratch).error)
     }
 
     /// The allowed distance of a facet: the tolerance of edges for facets that touch one, if that is larger.
@@ -138,31 +148,38 @@ impl Prover<'_> {
             return (bound.error, Some(worst.map_or(Fault::Inside(None), Fault::Edge)));
         }
         // 4. Folds.
-        if let Some(fault) = self.fold(face, corners, &facet, t, boundary) {
+        if let Some(fault) = self.fold(face, &facet, t, boundary, tolerance) {
             return (f64::INFINITY, Some(fault));
         }
         // 5. Angles and lengths.
-        (bound.error, self.long_or_turning(face, corners, boundary, tolerance))
+        let claimed = self.claimed(&facet, bound.error, tolerance);
+        let fault = self.long_or_turning(face, corners, boundary, tolerance);
+        (
+            claimed,
+            fault.or_else(|| (claimed > tolerance.max(self.limits.tolerance)).then_some(Fault::Inside(None))),
+        )
     }
 
     /// A facet that faces away from the surface where it meets the boundary: it may reach beyond the face.
-    /// Folds inside the face only cover it more than once.
+    /// Folds inside the face only cover it more than once; they are mended where facets must part.
     fn fold(
         &self,
         face: &FaceMesh<'_, '_>,
-        corners: [u32; 3],
         facet: &Facet,
         t: u32,
         boundary: [bool; 3],
+        tolerance: f64,
     ) -> Option<Fault> {
+        let corners = face.mesh().triangles[t as usize];
         let is_at_end = |&v: &u32| match face.key(v) {
             Key::Private(_) => !self.effort.has(Remedy::Folds) && (v as usize) < face.chart().points.len(),
             _ => true,
         };
-        if !corners.iter().any(is_at_end) {
+        let must_part = tolerance < self.limits.tolerance;
+        if !must_part && !corners.iter().any(is_at_end) {
             return None;
         }
-        let height = self.folded_height(facet.xyz, corners.map(|v| face.normal(v)))?;
+        let height = self.folded_height(facet.xyz, corners.map(|v| face.normal(v)), tolerance)?;
         // A chord that leaves the face by about as much as the facet is high must be finer. Otherwise an
         // inner edge leaves the face.
         let leaves = |i: usize| facet.sag[i].or_else(|| boundary[i].then(|| bend(face, facet, i)));
@@ -193,7 +210,7 @@ impl Prover<'_> {
 
     /// The height of a facet that faces away from the surface at its corners: it lies outside the face,
     /// doubled back.
-    pub(super) fn folded_height(&self, xyz: [DVec3; 3], normals: [DVec3; 3]) -> Option<f64> {
+    pub(super) fn folded_height(&self, xyz: [DVec3; 3], normals: [DVec3; 3], tolerance: f64) -> Option<f64> {
         let [a, b, c] = xyz;
         let cross = (b - a).cross(c - a);
         let longest =
@@ -201,8 +218,8 @@ impl Prover<'_> {
         let height = cross.length() / longest.max(f64::MIN_POSITIVE);
         let [n, m, k] = normals;
         let agree = n.dot(m).min(m.dot(k)).min(k.dot(n)) > NORMALS_AGREE;
-        (agree && height > FOLD_HEIGHT * self.limits.tolerance && (n + m + k).dot(cross) < 0.0)
-            .then_some(height)
+        let least = FOLD_HEIGHT * tolerance.min(self.limits.tolerance);
+        (agree && height > least && (n + m + k).dot(cross) < 0.0).then_some(height)
     }
 
     /// True where an edge of this triangle turns too far.
