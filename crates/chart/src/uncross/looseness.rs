@@ -56,23 +56,16 @@ impl Looseness {
         self.resolution + HOOK * self.of_edge(edge)
     }
 
-    /// The vertex beside which two edges meet, where both are so near to it that they may end or pass there:
-    /// one that they have in common, or else an end of one of them.
-    ///
-    /// ```text
-    ///          v            b passes the end v of a as near as a itself does, and c goes on from v to the end of b:
-    ///    a ____·__c__       the two stretches of b and c between v and that end are one.
-    ///    ______b_____\
-    /// ```
+    /// The common vertex of two edges that meet beside it, where both are so near to it that they may end
+    /// there.
     pub(super) fn hook(&self, part: &Part, edges: [u32; 2], points: [DVec3; 2]) -> Option<VertexId> {
         let [a, b] = edges.map(|e| &part.edges[e as usize]);
-        let (of_a, of_b) = ([a.start, a.end], [b.start, b.end]);
+        let of_b = [b.start, b.end];
         let at = |v: VertexId| part.vertices[v.index()].point;
         let is_near = |v: &VertexId| {
             (0..2).all(|k| points[k].distance(at(*v)) <= self.of_hook(edges[0]).max(self.of_hook(edges[1])))
         };
-        let common = of_a.into_iter().filter(|v| of_b.contains(v)).find(is_near);
-        common.or_else(|| of_a.into_iter().chain(of_b).find(is_near))
+        [a.start, a.end].into_iter().filter(|v| of_b.contains(v)).find(is_near)
     }
 }
 
