@@ -23,11 +23,15 @@
 use chordal_brep::{Coedge, Edge, EdgeId, FaceGeometry, Loop, Model, Part, Pcurve, Vertex, VertexId};
 use chordal_nurbs::{CurveInverter, DVec3, Range};
 
-/// Edges shorter than this fraction of the part's size have no length: the length is the rounding in the
-/// file.
+/// What is shorter than this part of its part's size has no length, whatever the file states: it is rounding.
 const NO_LENGTH: f64 = 1e-9;
 
-/// A stated accuracy counts up to this part of the part's size: some files state any number.
+/// A stated accuracy counts as it is up to this part of the part's size: at the finest tolerance in common
+/// use, 0.01 %, what is merged moves by a tenth of it.
+const CREDIBLE: f64 = 1e-5;
+
+/// Some files state more than the width of their smallest faces, or any number. Of what they state this part
+/// of the part's size counts.
 const ACCURACY: f64 = 1e-7;
 
 /// Two edges coincide only where they are this many times as long as they are apart.
@@ -114,29 +118,58 @@ impl<'a> Folding<'a> {
         off(0.0, ends[0]).max(off(1.0, ends[1]))
     }
 
+    /// The distance below which the file does not tell places apart.
+    fn accuracy(&self) -> f64 {
+        let stated = self.part.uncertainty.unwrap_or(0.0);
+        let is_credible = stated <= CREDIBLE * self.size;
+        let counts = if is_credible { stated } else { ACCURACY * self.size };
+        counts.max(NO_LENGTH * self.size)
+    }
+
     /// How far apart two edges may lie to be one.
     fn allowed(&self, a: Way, b: Way) -> f64 {
-        let stated = self.part.uncertainty.unwrap_or(0.0).min(ACCURACY * self.size);
-        self.looseness(a) + self.looseness(b) + stated.max(NO_LENGTH * self.size)
+        self.looseness(a) + self.looseness(b) + self.accuracy()
+    }
+
+    /// How long an edge is along its curve, where it is a curve.
+    fn length_of(&self, edge: EdgeId) -> Option<f64> {
+        let ends = |edge: &Edge| [edge.start, edge.end].map(|v| self.part.vertices[v.index()].point);
+        let [a, b] = ends(&self.part.edges[edge.index()]);
+        Some(length(&self.samples(Way { edge, forward: true })?).max(a.distance(b)))
+    }
+
+    /// Of every edge, whether it has no length: rounding is all there is of it, or it is within the accuracy
+    /// and stands between edges that are much longer in all its loops. Of small faces with short edges
+    /// something would be lost.
+    fn without_length(&self) -> Vec<bool> {
+        let all = 0..self.part.edges.len();
+        let lengths: Vec<Option<f64>> = all.map(|i| self.length_of(EdgeId::from(i))).collect();
+        let is_below = |edge: EdgeId, limit: f64| lengths[edge.index()].is_some_and(|length| length <= limit);
+        let (rounding, accuracy) = (NO_LENGTH * self.size, self.accuracy());
+        let mut found: Vec<bool> = (0..lengths.len()).map(|i| is_below(EdgeId::from(i), accuracy)).collect();
+        if accuracy <= rounding || !found.contains(&true) {
+            return found;
+        }
+        for boundary in self.part.faces.iter().flat_map(|face| &face.loops) {
+            let Loop::Edges { coedges, .. } = boundary else { continue };
+            for run in runs(coedges, |c| is_below(c.edge, accuracy)) {
+                let total: f64 = run.short.iter().filter_map(|c| lengths[c.edge.index()]).sum();
+                let is_slender =
+                    |c: &Coedge| lengths[c.edge.index()].is_some_and(|length| length >= SLENDER * total);
+                if !(total <= accuracy && run.beside.is_some_and(|two| two.into_iter().all(is_slender))) {
+                    run.short.iter().for_each(|c| found[c.edge.index()] = is_below(c.edge, rounding));
+                }
+            }
+        }
+        found
     }
 
     /// Step 1.
     fn collapse_edges_without_length(&mut self) {
-        let limit = NO_LENGTH * self.size;
         let mut same: Vec<u32> = (0..self.part.vertices.len() as u32).collect();
-        let mut collapsed = vec![false; self.part.edges.len()];
-        for i in 0..self.part.edges.len() {
+        let collapsed = self.without_length();
+        for i in (0..collapsed.len()).filter(|&i| collapsed[i]) {
             let edge = &self.part.edges[i];
-            let [a, b] = [edge.start, edge.end].map(|v| self.part.vertices[v.index()].point);
-            if edge.curve.is_none() || a.distance(b) > limit {
-                continue;
-            }
-            let way = Way { edge: EdgeId::from(i), forward: true };
-            let has_length = |points: Vec<DVec3>| points.iter().any(|p| p.distance(a) > limit);
-            if self.samples(way).is_none_or(has_length) {
-                continue;
-            }
-            collapsed[i] = true;
             let [from, to] = [same[edge.start.index()], same[edge.end.index()]];
             let (keep, drop) = (from.min(to), from.max(to));
             same.iter_mut().filter(|v| **v == drop).for_each(|v| *v = keep);
@@ -358,6 +391,34 @@ fn halves(coedge: Coedge, first: EdgeId, second: EdgeId, share: f64) -> Vec<Coed
         parts.reverse();
     }
     parts
+}
+
+/// Consecutive short edges of a loop, and the edges before and after them; none where all are short.
+struct Run<'c> {
+    short: Vec<&'c Coedge>,
+    beside: Option<[&'c Coedge; 2]>,
+}
+
+fn runs(coedges: &[Coedge], is_short: impl Fn(&Coedge) -> bool) -> Vec<Run<'_>> {
+    let n = coedges.len();
+    let Some(first) = coedges.iter().position(|c| !is_short(c)) else {
+        return vec![Run { short: coedges.iter().collect(), beside: None }];
+    };
+    // From one long edge to the next, once round.
+    let mut found = Vec::new();
+    let mut before = &coedges[first];
+    let mut short = Vec::new();
+    for coedge in (1..=n).map(|k| &coedges[(first + k) % n]) {
+        if is_short(coedge) {
+            short.push(coedge);
+            continue;
+        }
+        if !short.is_empty() {
+            found.push(Run { short: std::mem::take(&mut short), beside: Some([before, coedge]) });
+        }
+        before = coedge;
+    }
+    found
 }
 
 fn length(points: &[DVec3]) -> f64 {
