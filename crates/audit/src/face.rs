@@ -5,6 +5,7 @@ use crate::boundary::{Boundary, boundary};
 use crate::chart::{Chart, exact, turn, turned_triangles};
 use crate::context::Context;
 use crate::findings::{FaceFindings, Log};
+use crate::folds_at_edges::AtEdge;
 use crate::halves::{Half, Halves, half_key};
 use crate::overlap::overlaps;
 use crate::precision::CHUNK;
@@ -55,6 +56,11 @@ pub(crate) fn audit_face(context: &Context<'_>, index: usize) -> FaceFindings {
     let halves = Halves::of(&mesh.triangles, mesh.corners.len());
     let bounds_of = boundary(context, face, mesh, &halves.single);
     let folded = check_triangles(context, &chart, &mut found, &mut log);
+    found.is_along_sense = chart.turned == face.normal_reversed();
+    found.at_edges.extend(bounds_of.chords.iter().filter_map(|chord| {
+        let (edge, index) = chord.of?;
+        Some(AtEdge { edge, chord: index, triangle: chord.half.triangle, side: chord.half.side })
+    }));
     found.turned_over = is_turned_over(&chart, &bounds_of, log.face);
     let side = loop_side(&chart, &bounds_of, log.face);
     found.other_side = side == LoopSide::AgainstLoops;

@@ -1,5 +1,6 @@
 //! The findings of the audit about one face.
 
+use crate::folds_at_edges::AtEdge;
 use crate::report::{FaceAudit, Problem, Subject};
 use chordal_brep::{AuditIssue, Face};
 
@@ -23,6 +24,10 @@ pub(crate) struct FaceFindings {
     pub shared: Vec<(u64, bool)>,
     /// Triangles over such positions only, sorted corners.
     pub shared_triangles: Vec<[u32; 3]>,
+    /// Facets along the chords of edges.
+    pub at_edges: Vec<AtEdge>,
+    /// The normals of the mesh are those of the surface with the sense of the face.
+    pub is_along_sense: bool,
     /// Every triangle runs against the sense of the face, and no loop explains it.
     pub turned_over: bool,
     /// The mesh is on the other side of its loops by their direction, which a closed shell may refute.

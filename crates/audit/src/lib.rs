@@ -9,11 +9,13 @@
 //! - It covers the right part of its surface (`region`), once (`overlap`), with the area that its exact loops
 //!   bound (`area`).
 //! - The error bounds hold (`prove`), and for a share of the facets a second, simple one (`second_bound`).
-//! - Each shell is closed and oriented by the identity of its vertices (`shell`), and no facets of a closed
-//!   shell cut each other (`self_intersections`).
+//! - Each shell is closed and oriented by the identity of its vertices (`shell`); faces that go on smoothly
+//!   at an edge are not folded there (`folds_at_edges`), and no facets of a closed shell cut each
+//!   other (`self_intersections`).
 //!
 //! [`largest_distance`] computes the distance of any two meshes by branch and bound.
 
+mod along_sides;
 mod area;
 mod bend;
 mod boundary;
@@ -28,6 +30,7 @@ mod face;
 mod face_at;
 mod fan;
 mod findings;
+mod folds_at_edges;
 mod graph;
 mod halves;
 mod overlap;

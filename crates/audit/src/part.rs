@@ -4,6 +4,7 @@ use crate::context::Context;
 use crate::edges::{EdgePrecision, audit_edges};
 use crate::face::audit_face;
 use crate::findings::FaceFindings;
+use crate::folds_at_edges::folds_at_edges;
 use crate::precision::ROUNDING;
 use crate::report::{AuditOptions, Claim, FaceCrossing, PartAudit, Problem, Subject};
 use crate::self_intersections::self_intersections;
@@ -65,6 +66,7 @@ pub fn audit_part(
         audit.faces.push(face.audit);
     }
     add_shells(&context, &faces, &mut audit);
+    audit.problems.extend(folds_at_edges(&context, &faces));
     if options.self_intersections {
         add_self_intersections(&context, &mut audit);
     }

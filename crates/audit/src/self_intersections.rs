@@ -7,7 +7,8 @@
 //! 1. A tree over the boxes of the faces gives pairs of faces that may meet.
 //! 2. Pairs of which one is clearly beside the plane of the other are omitted ([`crate::separation`]).
 //! 3. Trees over the boxes of their facets, built when first needed, give pairs of facets.
-//! 4. Exact predicates decide ([`crate::triangle_pair`]).
+//! 4. Exact predicates decide ([`crate::triangle_pair`]), and where a side of a facet lies in another facet,
+//!    what is on both sides of it ([`crate::along_sides`]).
 //!
 //! Two facets of one face are compared only where the surface can come back to itself, and where no view
 //! shows that they lie one beside the other ([`crate::graph`]). The facets of a plane, cylinder, cone, sphere
@@ -16,11 +17,12 @@
 //! For each pair of faces, it is then decided whether the faces themselves cut or touch each other in the file
 //! ([`crate::exact_crossing`]), or only their facets do.
 
+use crate::along_sides::{Contact, Sides};
 use crate::exact_crossing::{Cut, InFile, in_file};
 use crate::graph::is_graph;
 use crate::report::{FaceCrossing, FacetCrossing};
 use crate::separation::PlaneFace;
-use crate::triangle_pair::{Facet3, cut_each_other, cut_points};
+use crate::triangle_pair::{Facet3, Meeting, cut_points, meeting};
 use chordal_brep::{FaceGeometry, FaceId, Part};
 use chordal_mesh::PartMesh;
 use chordal_nurbs::{Box3, BoxTree, Surface};
@@ -110,20 +112,43 @@ fn crossings<'f>(part: &Part, mesh: &PartMesh, all: &'f [FacetsOfFace]) -> Vec<C
         let (a, b) = (&all[i as usize], &all[j as usize]);
         let (a, b) = if a.face <= b.face { (a, b) } else { (b, a) };
         let facets = a.facets.len() + if i == j { 0 } else { b.facets.len() };
-        let mut cuts = Cuts { facets: Vec::new(), left: most.max(TESTS_PER_FACET * facets) };
+        let mut cuts =
+            Cuts { facets: Vec::new(), contacts: Vec::new(), left: most.max(TESTS_PER_FACET * facets) };
         if i == j {
             a.cuts_of_its_own(&mut cuts)
         } else {
             a.cuts_with(b, &mut cuts)
         }
-        let Cuts { mut facets, left } = cuts;
+        let is_found = !cuts.facets.is_empty() || !cuts.contacts.is_empty() || cuts.left == 0;
+        is_found.then_some(([a, b], cuts))
+    };
+    let mut found: Vec<([&'f FacetsOfFace; 2], Cuts)> = pairs.par_iter().filter_map(cuts).collect();
+    found.sort_unstable_by_key(|(faces, _)| faces.map(|f| f.face));
+    add_cuts_along_sides(all, &mut found);
+    let crossing = |(faces, cuts): ([&'f FacetsOfFace; 2], Cuts)| {
+        let Cuts { mut facets, left, .. } = cuts;
         facets.sort_unstable();
         let is_complete = left > 0;
-        (!facets.is_empty() || !is_complete).then_some(Crossing { faces: [a, b], facets, is_complete })
+        (!facets.is_empty() || !is_complete).then_some(Crossing { faces, facets, is_complete })
     };
-    let mut found: Vec<Crossing<'f>> = pairs.par_iter().filter_map(cuts).collect();
-    found.sort_unstable_by_key(|crossing| crossing.faces.map(|f| f.face));
-    found
+    found.into_iter().filter_map(crossing).collect()
+}
+
+/// Where sides of facets lie in others, the facets on both sides of them tell whether they cut.
+fn add_cuts_along_sides(all: &[FacetsOfFace], found: &mut [([&FacetsOfFace; 2], Cuts)]) {
+    if found.iter().all(|(_, cuts)| cuts.contacts.is_empty()) {
+        return;
+    }
+    let facets = |([a, b], contact): ([&FacetsOfFace; 2], &Contact)| {
+        [a.facets[contact.facets[0] as usize], b.facets[contact.facets[1] as usize]]
+    };
+    let contacts = found.iter().flat_map(|(faces, cuts)| cuts.contacts.iter().map(|c| (*faces, c)));
+    let wanted = contacts.map(|(faces, contact)| (facets((faces, contact)), contact.meeting));
+    let sides = Sides::new(wanted, all.iter().flat_map(|f| &f.facets));
+    for (faces, cuts) in found {
+        let is_cut = |contact: &&Contact| sides.is_cut(&facets((*faces, contact)), contact.meeting);
+        cuts.facets.extend(cuts.contacts.iter().filter(is_cut).map(|contact| contact.facets));
+    }
 }
 
 /// Leaves out the pairs of which one face is clearly beside the plane of the other.
@@ -185,6 +210,8 @@ impl Crossing<'_> {
 /// The pairs of facets that cut each other, found within the limit of comparisons.
 struct Cuts {
     facets: Vec<[u32; 2]>,
+    /// Pairs of which a side of one lies in the other.
+    contacts: Vec<Contact>,
     left: usize,
 }
 
@@ -192,8 +219,10 @@ impl Cuts {
     fn compare(&mut self, pair: [u32; 2], s: &Facet3, t: &Facet3) {
         if self.left > 0 {
             self.left -= 1;
-            if cut_each_other(s, t) {
-                self.facets.push(pair);
+            match meeting(s, t) {
+                Meeting::Apart => {}
+                Meeting::Cut => self.facets.push(pair),
+                meeting => self.contacts.push(Contact { facets: pair, meeting }),
             }
         }
     }

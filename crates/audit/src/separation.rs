@@ -4,8 +4,8 @@
 //!
 //! ```text
 //!     │ │  other face        every vertex of the other face is one of the plane face, or clearly beside its
-//!     │ │                    plane, always on the same side; and no facet of it lies in the plane
-//!   ──●─●──────── plane
+//!     │ │                    plane, always on the same side; no facet of it lies in the plane, and no side
+//!   ──●─●──────── plane      that is not one of the plane face as well
 //! ```
 //!
 //! Facets of the two then meet at the vertices that they share, and nowhere else: above the plane there is no
@@ -13,9 +13,11 @@
 //! is a million times what the vertices of the plane face themselves lie off the plane, so that a cut that
 //! this overlooks is no deeper than their rounding.
 
+use crate::halves::half_key;
 use chordal_brep::{FaceGeometry, Part};
 use chordal_mesh::{FaceMesh, PartMesh};
 use chordal_nurbs::{Box3, DVec3, Surface};
+use std::sync::OnceLock;
 
 /// Points further from the plane than this multiple of the distance of its own vertices are beside it.
 const CLEAR: f64 = 1e6;
@@ -24,21 +26,37 @@ const CLEAR: f64 = 1e6;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A face that its facets show to be plane.
-pub(crate) struct PlaneFace {
+pub(crate) struct PlaneFace<'a> {
+    mesh: &'a FaceMesh,
     origin: DVec3,
     normal: DVec3,
     /// Beyond this, a height over the plane is clear.
     clear: f64,
     /// The positions of its vertices, in order.
     positions: Vec<u32>,
+    /// The keys of the sides of its facets, in order.
+    sides: OnceLock<Vec<u64>>,
 }
 
-impl PlaneFace {
+/// The key of the side of a facet opposite a corner.
+fn side_key(mesh: &FaceMesh, t: &[u32; 3], opposite: usize) -> u64 {
+    let [a, b] = [1, 2].map(|k| mesh.corners[t[(opposite + k) % 3] as usize].position);
+    half_key(a, b).0
+}
+
+impl<'a> PlaneFace<'a> {
     /// `None` for a face on another surface.
-    pub fn new(part: &Part, mesh: &PartMesh, face: usize) -> Option<Self> {
+    pub fn new(part: &Part, mesh: &'a PartMesh, face: usize) -> Option<Self> {
         let FaceGeometry::Surface(surface) = &part.faces[face].geometry else { return None };
         let Surface::Plane { frame } = surface.as_ref() else { return None };
-        let mut plane = Self { origin: frame.origin, normal: frame.z, clear: 0.0, positions: Vec::new() };
+        let mut plane = Self {
+            mesh: &mesh.faces[face],
+            origin: frame.origin,
+            normal: frame.z,
+            clear: 0.0,
+            positions: Vec::new(),
+            sides: OnceLock::new(),
+        };
         let mut off = 0.0f64;
         for corner in &mesh.faces[face].corners {
             let p = mesh.positions[corner.position as usize];
@@ -75,10 +93,31 @@ impl PlaneFace {
                 sides[usize::from(height > 0.0)] = true;
             }
         }
+        sides != [true, true] && (in_plane < 2 || self.has_all_in_plane(other, positions))
+    }
+
+    /// True where the other face has no facet in the plane, and no side in it that this face does not have.
+    fn has_all_in_plane(&self, other: &FaceMesh, positions: &[DVec3]) -> bool {
         let is_in_plane = |c: &u32| {
             let position = other.corners[*c as usize].position;
             self.height(positions[position as usize]).abs() <= self.clear
         };
-        sides != [true, true] && (in_plane < 3 || !other.triangles.iter().any(|t| t.iter().all(is_in_plane)))
+        other.triangles.iter().all(|t| {
+            let mut out = (0..3).filter(|&i| !is_in_plane(&t[i]));
+            match (out.next(), out.next()) {
+                (None, _) => false,
+                (Some(opposite), None) => self.sides().binary_search(&side_key(other, t, opposite)).is_ok(),
+                _ => true,
+            }
+        })
+    }
+
+    fn sides(&self) -> &[u64] {
+        self.sides.get_or_init(|| {
+            let of_facet = |t: &[u32; 3]| [0, 1, 2].map(|i| side_key(self.mesh, t, i));
+            let mut sides: Vec<u64> = self.mesh.triangles.iter().flat_map(of_facet).collect();
+            sides.sort_unstable();
+            sides
+        })
     }
 }

@@ -376,13 +376,17 @@ fn a_face_turned_over_is_found() {
 /// A tetrahedron of plane faces with one corner at `at`.
 fn tetrahedron(part: &mut Part, at: DVec3) {
     let v = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| vertex(part, at + p));
-    for [a, b, c] in [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {
-        let corners = [v[a], v[b], v[c]];
-        let edges: Vec<_> = (0..3).map(|i| line(part, corners[i], corners[(i + 1) % 3])).collect();
-        let [p, q, r] = corners.map(|v| part.vertices[v.index()].point);
-        let frame = Frame::new(p, (q - p).cross(r - p).normalize(), (q - p).normalize());
-        face(part, Surface::Plane { frame }, vec![a_loop(edges)]);
+    for corners in [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {
+        triangle(part, corners.map(|c: usize| v[c]));
     }
+}
+
+/// A plane face between three vertices.
+fn triangle(part: &mut Part, corners: [VertexId; 3]) {
+    let edges: Vec<_> = (0..3).map(|i| line(part, corners[i], corners[(i + 1) % 3])).collect();
+    let [p, q, r] = corners.map(|v| part.vertices[v.index()].point);
+    let frame = Frame::new(p, (q - p).cross(r - p).normalize(), (q - p).normalize());
+    face(part, Surface::Plane { frame }, vec![a_loop(edges)]);
 }
 
 #[test]
@@ -403,6 +407,109 @@ fn facets_that_cut_each_other_are_found() {
         let off = AuditOptions::new(TOLERANCE).with_self_intersections(false);
         assert!(audit_part(&part, &mesh(&part), &off, None).clean());
     }
+}
+
+/// An octahedron of plane faces whose corners are `reach` from its middle.
+fn octahedron(part: &mut Part, middle: DVec3, reach: f64) {
+    let axes = [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y, DVec3::Z, -DVec3::Z];
+    let v = axes.map(|axis| vertex(part, middle + reach * axis));
+    for i in 0..4 {
+        let j = (i + 1) % 4;
+        triangle(part, [v[i], v[j], v[4]]);
+        triangle(part, [v[j], v[i], v[5]]);
+    }
+}
+
+#[test]
+fn cuts_through_vertices_and_sides_are_found() {
+    // The octahedron's four sides in its middle plane lie in the bottom of the tetrahedron: whatever passes
+    // through it passes along them. Shifted down, it hangs under the bottom by a corner; up, it is inside.
+    let at = |height: f64| DVec3::new(0.25, 0.25, height);
+    for (height, reach, cut) in [(0.0, 0.125, true), (-0.125, 0.125, false), (0.1875, 0.0625, false)] {
+        let mut part = Part::default();
+        tetrahedron(&mut part, DVec3::ZERO);
+        octahedron(&mut part, at(height), reach);
+        close(&mut part, true);
+        let audit = audited(&part, &mesh(&part));
+        let expected = if cut { vec!["self-intersections"] } else { vec![] };
+        assert_eq!(codes(&audit), expected, "at {height}: {:?}", audit.problems);
+        let pairs: usize = audit.self_intersections.iter().map(|crossing| crossing.facet_pairs).sum();
+        assert_eq!(pairs, if cut { 4 } else { 0 });
+    }
+}
+
+#[test]
+fn surfaces_that_cut_along_common_sides_are_found() {
+    // Two octahedra side by side have an edge in common, vertices of their own; turned into each other, the
+    // edges lie on each other and the faces cut along them.
+    for (shift, cut) in [(DVec3::new(0.5, 0.5, 0.0), false), (DVec3::new(0.25, 0.25, 0.0), true)] {
+        let mut part = Part::default();
+        octahedron(&mut part, DVec3::ZERO, 0.5);
+        octahedron(&mut part, shift, 0.5);
+        close(&mut part, true);
+        let audit = audited(&part, &mesh(&part));
+        assert_eq!(codes(&audit), if cut { vec!["self-intersections"] } else { vec![] }, "{shift}");
+    }
+}
+
+/// Two squares of one plane, each a face, with an edge in common.
+fn two_squares() -> Part {
+    let mut part = Part::default();
+    let at = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (0.0, 1.0)];
+    let v = at.map(|(x, y)| vertex(&mut part, DVec3::new(x, y, 0.0)));
+    for corners in [[0, 1, 4, 5], [1, 2, 3, 4]] {
+        let edges: Vec<_> = (0..4).map(|i| line(&mut part, v[corners[i]], v[corners[(i + 1) % 4]])).collect();
+        let plane = Surface::Plane { frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X) };
+        face(&mut part, plane, vec![a_loop(edges)]);
+    }
+    close(&mut part, false);
+    part
+}
+
+/// The mesh of [`two_squares`] with the far side of the second square moved over the first one.
+fn folded(good: &PartMesh, height: f64) -> PartMesh {
+    let mut mesh = good.clone();
+    for (p, origin) in mesh.positions.iter_mut().zip(&mesh.origins) {
+        if let Origin::Vertex(2 | 3) = origin {
+            (p.x, p.z) = (0.25, height);
+        }
+    }
+    mesh
+}
+
+#[test]
+fn facets_that_are_folded_at_an_edge_are_found() {
+    let mut part = two_squares();
+    let good = mesh(&part);
+    assert!(audited(&part, &good).clean(), "{:?}", audited(&part, &good).problems);
+    for height in [0.0, 0.03] {
+        expect("a fold", &part, &folded(&good, height), "folded-at-edge");
+    }
+    // Exactly onto it, in a shell that the file calls closed, they overlap.
+    part.shells[0].closed = true;
+    let mut exact = folded(&good, 0.0);
+    for corner in &mut exact.faces[1].corners {
+        let p = exact.positions[corner.position as usize];
+        corner.uv = DVec2::new(p.x, p.y);
+    }
+    expect("an overlap", &part, &exact, "self-intersections");
+}
+
+#[test]
+fn a_fold_of_the_file_is_no_fault() {
+    // The second face is the first one's other side.
+    let mut part = Part::default();
+    let at = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.25, 0.0), (0.25, 1.0)];
+    let v = at.map(|(x, y)| vertex(&mut part, DVec3::new(x, y, 0.0)));
+    for (corners, same_sense) in [([0, 1, 2, 3], true), ([4, 5, 2, 1], false)] {
+        let edges: Vec<_> = (0..4).map(|i| line(&mut part, v[corners[i]], v[corners[(i + 1) % 4]])).collect();
+        let plane = Surface::Plane { frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X) };
+        let face = face(&mut part, plane, vec![a_loop(edges)]);
+        part.faces[face.index()].same_sense = same_sense;
+    }
+    close(&mut part, false);
+    let audit = audited(&part, &mesh(&part));
+    assert!(!codes(&audit).contains(&"folded-at-edge"), "{:?}", audit.problems);
 }
 
 /// A ball with a tetrahedron inside, one corner of which is this far from the centre.

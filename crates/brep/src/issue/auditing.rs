@@ -111,6 +111,14 @@ pub enum AuditIssue {
         /// The area of the triangles, as a share of the area within the loops.
         share: f64,
     },
+    /// Triangles of two faces that go on into each other smoothly by the file are folded onto each other along
+    /// their edge.
+    FoldedAtEdge {
+        /// Chords of the edge at which that was found.
+        chords: usize,
+        /// The two faces.
+        faces: [Source; 2],
+    },
     /// A point of the surface is farther from the mesh than the bound allows.
     BoundExceeded {
         /// The bound.
@@ -289,6 +297,7 @@ impl AuditIssue {
             AuditIssue::BothSheets => "both-sheets",
             AuditIssue::OutOfReach { .. } => "out-of-reach",
             AuditIssue::WrongArea { .. } => "wrong-area",
+            AuditIssue::FoldedAtEdge { .. } => "folded-at-edge",
             AuditIssue::BoundExceeded { .. } => "bound-exceeded",
             AuditIssue::FaceTurnedOver => "face-turned-over",
             AuditIssue::MisplacedVertices { .. } => "misplaced-vertices",
@@ -379,6 +388,10 @@ impl AuditIssue {
                 "the triangles cover {} times the area within the loops, in parameter space",
                 number(*share, 4)
             ),
+            AuditIssue::FoldedAtEdge { chords, faces: [a, b] } => {
+                let chords = count(*chords, "chord", "chords");
+                write!(f, "faces {a} and {b} go on smoothly at the edge and are folded at {chords} of it")
+            }
             AuditIssue::BoundExceeded { proven, measured } => write!(
                 f,
                 "a point of the surface is {} from the mesh, beyond the proven error of {}",
