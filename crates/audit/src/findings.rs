@@ -1,8 +1,17 @@
 //! The findings of the audit about one face.
 
-use crate::folds_at_edges::AtEdge;
 use crate::report::{FaceAudit, Problem, Subject};
 use chordal_brep::{AuditIssue, Face};
+
+/// A facet of a face along a chord of an edge.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtEdge {
+    pub edge: u32,
+    pub chord: u32,
+    pub triangle: u32,
+    /// The side opposite this corner of the triangle lies along the chord.
+    pub side: u8,
+}
 
 /// The findings about one face.
 #[derive(Debug, Default)]

@@ -19,7 +19,7 @@
 //! whose direction means nothing.
 
 use crate::context::Context;
-use crate::findings::FaceFindings;
+use crate::findings::{AtEdge, FaceFindings};
 use crate::report::{Problem, Subject};
 use chordal_brep::AuditIssue;
 use chordal_nurbs::DVec3;
@@ -32,16 +32,6 @@ const FOLDED: f64 = -0.5;
 
 /// Facets that are higher than so many times the tolerance.
 const HIGH: f64 = 2.0;
-
-/// A facet of a face along a chord of an edge.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AtEdge {
-    pub edge: u32,
-    pub chord: u32,
-    pub triangle: u32,
-    /// The side opposite this corner of the triangle lies along the chord.
-    pub side: u8,
-}
 
 /// What lies along a chord.
 #[derive(Clone, Copy, Debug, Default)]
