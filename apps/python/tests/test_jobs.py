@@ -20,8 +20,8 @@ import chordal
 from conftest import CORPUS
 
 
-# Seconds after which a job that would take minutes did not stop when it should. On a machine with nothing else
-# to do it stops within 0.2 s.
+# Seconds after which a job that would take minutes did not stop when it should. On a machine with nothing
+# else to do it stops within 0.2 s.
 LONG_AGO = 5.0
 
 
