@@ -20,11 +20,6 @@ import chordal
 from conftest import CORPUS
 
 
-# Seconds after which a job that would take minutes did not stop when it should. On a machine with nothing
-# else to do it stops within 0.2 s.
-LONG_AGO = 5.0
-
-
 def digest(name: str) -> str:
     return hashlib.sha256(chordal.mesh(CORPUS / name).to_bytes("ply")).hexdigest()
 
@@ -74,7 +69,7 @@ def test_cancelling_takes_less_than_200_milliseconds() -> None:
 
     with pytest.raises(chordal.Cancelled):
         model.mesh("0.00001%", progress=progress)
-    assert time.perf_counter() - asked[0] < LONG_AGO
+    assert time.perf_counter() - asked[0] < 0.2
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of this kind are those of Unix")
@@ -97,7 +92,7 @@ def test_ctrl_c_stops_a_long_mesh() -> None:
     process.send_signal(signal.SIGINT)
     asked = time.perf_counter()
     assert process.stdout.readline() == "stopped\n"
-    assert time.perf_counter() - asked < LONG_AGO
+    assert time.perf_counter() - asked < 0.5
     assert process.wait(timeout=20) == 7
 
 
