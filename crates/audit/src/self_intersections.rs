@@ -192,18 +192,14 @@ impl Crossing<'_> {
         self.pairs().map(move |[s, t]| FacetCrossing { faces, bounds: cut_points(s, t) })
     }
 
-    /// Whether the two exact faces cross, by tests at places distributed over all cuts of their facets.
+    /// Whether the two exact faces cross or touch at each of some places, distributed over all cuts of their
+    /// facets: faces that touch at one place do not excuse facets that cross at another one.
     fn in_file(&self, part: &Part, mesh: &PartMesh) -> InFile {
         let faces = self.faces.map(|f| f.face as usize);
         let cuts = self.pairs().zip(&self.facets).step_by(self.facets.len().div_ceil(MOST_PLACES).max(1));
-        let mut found = InFile::Apart;
-        for ([s, t], &facets) in cuts {
-            found = found.max(in_file(part, mesh, faces, facets, Cut::of(s, t)));
-            if found == InFile::Crossing {
-                break;
-            }
-        }
-        found
+        cuts.map(|([s, t], &facets)| in_file(part, mesh, faces, facets, Cut::of(s, t)))
+            .min()
+            .unwrap_or(InFile::Apart)
     }
 }
 
